@@ -34,7 +34,10 @@ RUN = (
     "index.md",
     "tour.md",
     "models/potential.md",
-    *(f"howto/{name}.md" for name in ("machine", "chamber", "volume", "cluster", "results", "units")),
+    *(
+        f"howto/{name}.md"
+        for name in ("machine", "chamber", "volume", "cluster", "results", "export", "units")
+    ),
 )
 
 

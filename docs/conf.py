@@ -43,7 +43,7 @@ nb_execution_mode = "off"
 nb_merge_streams = True
 
 autodoc_member_order = "bysource"
-autodoc_mock_imports = ["jax"]  # the site does without the extra gpu
+autodoc_mock_imports = ["jax", "pythonfmu"]  # the site does without the extras gpu and export
 autodoc_typehints = "none"  # types stand with the parameters
 autodoc_class_signature = "mixed"
 add_module_names = False

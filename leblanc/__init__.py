@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from leblanc.studies.bearing import bearing
     from leblanc.studies.compare import compare
     from leblanc.studies.explain import explain
+    from leblanc.studies.export import export
     from leblanc.studies.fit import fit
     from leblanc.studies.layer import layer
     from leblanc.studies.map import map_balls, map_whirl
@@ -59,6 +60,7 @@ __all__ = [
     "compare",
     "example",
     "explain",
+    "export",
     "fit",
     "layer",
     "load_scene",
@@ -79,8 +81,8 @@ sys.meta_path.append(Finder)
 
 # Each in a module of its name.
 _QUESTIONS = (
-    *("bearing", "compare", "explain", "fit", "layer", "modes", "optimise", "outputs", "run", "runup"),
-    *("sweep", "validate", "volume"),
+    *("bearing", "compare", "explain", "export", "fit", "layer", "modes", "optimise", "outputs", "run"),
+    *("runup", "sweep", "validate", "volume"),
 )
 # Where each public name lives: its module, and its name there.
 _HOMES = {

@@ -48,7 +48,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Each does what the command of its name does, and returns a result.",
         (
             *("run", "run_up", "map_whirl", "map_balls", "optimise", "sweep", "compare", "fit", "explain"),
-            *("layer", "modes", "volume", "bearing", "validate", "open", "outputs"),
+            *("layer", "modes", "volume", "bearing", "validate", "export", "open", "outputs"),
         ),
     ),
     ("Errors", "What is wrong with the input, in full.", ("InputError", "SceneError")),

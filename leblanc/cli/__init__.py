@@ -12,14 +12,15 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
-from importlib.metadata import EntryPoint, PackageNotFoundError, version
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 from typer.main import get_command
 
-from leblanc.cli import new, view
+from leblanc.cli import diff, new, report_bug, schema, view
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -32,13 +33,20 @@ from solvers.compiling import SPENT, with_room
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
-# Commands in the order of the help: of some the module, a function of its name in it; those of the others are
-# made from the signature of their call.
-NAMES = (
-    *("new", "explain", "run", "compare", "fit", "map", "runup", "optimise", "sweep", "view"),
-    *("layer", "modes", "bearing", "volume", "outputs"),
-)
-MODULES = {each.__name__.rpartition(".")[2]: each for each in (new, view)}
+# Commands in the order of the help, by what they are for: of some the module, a function of its name in it;
+# those of the others are made from the signature of their call. Those of the last groups other packages have.
+GROUPS = {
+    "Begin": ("new", "explain", "schema", "diff"),
+    "What the machine does": ("run", "runup", "map", "compare", "export", "view"),
+    "Choose and measure": ("optimise", "sweep", "fit"),
+    "The liquid alone, and parts": ("layer", "modes", "volume", "bearing"),
+    "Results, and how far they are right": ("outputs", "validate", "trade", "notebooks", "report-bug"),
+}
+_ELSEWHERE = ("validate", "trade", "notebooks")
+NAMES = tuple(name for names in GROUPS.values() for name in names if name not in _ELSEWHERE)
+MODULES = {
+    each.__name__.rpartition(".")[2].replace("_", "-"): each for each in (diff, new, report_bug, schema, view)
+}
 ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
@@ -171,17 +179,40 @@ def _usage(error: BaseException) -> str:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        try:
-            print(version("leblanc"))
-        except PackageNotFoundError:
-            print("not installed")
+        own, *others = report_bug.versions().items()
+        print(f"leblanc {own[1]} ({', '.join(' '.join(one) for one in others)})")
         raise typer.Exit
+
+
+class _Grouped(TyperGroup):
+    """Commands by what they are for, each with its whole sentence."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write them into the help."""
+        every = self.list_commands(ctx)
+        known = {name for names in GROUPS.values() for name in names}
+        groups = GROUPS | {"Of other packages": tuple(name for name in every if name not in known)}
+        for title, names in groups.items():
+            there = [(name, self.get_command(ctx, name)) for name in names if name in every]
+            rows = [(name, command.get_short_help_str(_SENTENCE)) for name, command in there if command]
+            if rows:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
+
+
+_SENTENCE = 200  # characters that a command may say of itself
+_WIDE = 100  # columns of a help
 
 
 def application(wanted: str = "") -> typer.Typer:
     """All commands, those of installed packages too; only the wanted one of this package if it is named."""
     found = typer.Typer(
-        name="leblanc", add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False
+        name="leblanc",
+        cls=_Grouped,
+        add_completion=False,
+        rich_markup_mode=None,
+        pretty_exceptions_enable=False,
+        context_settings={"max_content_width": _WIDE},
     )
 
     @found.callback()
@@ -193,7 +224,7 @@ def application(wanted: str = "") -> typer.Typer:
         """Passive liquid balancers: from the free surface to the machine."""
 
     for name in [wanted] if wanted in NAMES else NAMES:
-        own = getattr(MODULES[name], name) if name in MODULES else _asked(name)
+        own = getattr(MODULES[name], name.replace("-", "_")) if name in MODULES else _asked(name)
         found.command(name)(_as_typed(own))
     if wanted not in NAMES:
         others = announced(ANNOUNCED, NAMES, _unread)
@@ -218,7 +249,8 @@ def _as_typed(command: Callable[..., object]) -> Callable[..., object]:
             return command(**options)
         except InputError as error:
             scene, fault = options.get("scene"), None
-            if isinstance(scene, Path):
+            changed = [text.partition("=")[0].strip() for text in options.get("set") or ()]
+            if isinstance(scene, Path) and error.field not in changed:
                 from leblanc.scene.scene import fault_in
 
                 fault = fault_in(scene, error)

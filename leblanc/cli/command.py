@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_origin
 
 import typer
 
-from leblanc.cli.terminal.output import load, load_study, processes
+from leblanc.cli.terminal.output import FORCE, SET, load, load_study, processes
 from leblanc.core.answer import Answer
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
@@ -42,7 +42,7 @@ _ONLY_OUT = "Folder for the figure; without it none is written."
 _PNG = "Write figures as PNG as well."
 _JSON = "Print one JSON object instead of words."
 _FOLDER = ("folder", "out")  # of a study
-_LOADED: Mapping[Any, Callable[[Path], Any]] = {SCENE: load, STUDY: load_study}
+_LOADED: Mapping[Any, Callable[..., Any]] = {SCENE: load, STUDY: load_study}
 
 
 def command(question: Callable[..., Any]) -> Callable[..., None]:
@@ -64,21 +64,32 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     subject = next((one for one in own.values() if one.read in _LOADED), None)
     options = [_typed(one) for one in asked.values()]
     whole = subject is not None and subject.default is Parameter.empty  # it has a folder of its own
+    if files and whole:
+        options.append(_parameter("force", bool, typer.Option("--force", help=FORCE), False))
     if files:
         help_of_out = _OUT.format(subject.name) if subject is not None and whole else _ONLY_OUT
         options.append(_parameter("out", Path | None, typer.Option(help=help_of_out), None))
         options.append(_parameter("png", bool, typer.Option("--png", help=_PNG), False))
+    varied = subject is not None and subject.read is SCENE
+    if varied:
+        options.append(_parameter("set", list[str] | None, typer.Option("--set", help=SET), None))
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
-    def run(json: bool, out: Path | None = None, png: bool = False, **given: Any) -> None:
+    def run(
+        json: bool, out: Path | None = None, png: bool = False, force: bool = False, **given: Any
+    ) -> None:
         given |= {name: not given[name] for name, one in asked.items() if _usual(one)}
         machine, folder, where = None, None, f"leblanc {question.__name__}"
+        changes = given.pop("set", None) or ()
+        if changes and (subject is None or given[subject.name] is None):
+            raise InputError("--set", changes[0], "left out without a scene")
         if subject is not None and given[subject.name] is not None:
             source = Path(given[subject.name])
-            machine, where = _LOADED[subject.read](source), str(source)
+            loaded = _LOADED[subject.read]
+            machine, where = loaded(source, changes) if changes else loaded(source), str(source)
             if files and whole:
                 state = getattr(machine, "scene", machine).digest
-                folder = results_dir(machine.name, out, source, state, *files)
+                folder = results_dir(machine.name, out, source, state, *files, force=force)
         if out is not None and not whole:
             folder = out_dir(question.__name__, out)
         values = {name: _value(own[name], given[name]) for name in own}
@@ -93,7 +104,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
                 answer = present(answer, **shown) if present else answer
             except InputError as error:
                 raise _of_option(error, asked) from error
-        line = _command_line(question.__name__, list(own.values()), given)
+        line = _command_line(question.__name__, list(own.values()), given, changes)
         object.__setattr__(answer, "typed", replace(typed, command=line))
         finish(answer, where, json, folder, machine, png)
 
@@ -188,14 +199,14 @@ def _of_option(error: InputError, asked: Mapping[str, Asked]) -> InputError:
     return InputError("--out" if one is None else _option(one), error.value, error.allowed)
 
 
-def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -> str:
+def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any], changes: Sequence[str]) -> str:
     """The command that makes the same answer again, wherever its files go."""
     parts = ["leblanc", name]
     for one in asked:
         value = given[one.name]
         option = _option(one, value)
         if one.read is SCENE or one.option.argument:
-            parts += [] if value is None else [path_text(value)]
+            parts += [] if value is None else [str(value)]
         elif one.option.same or value == one.default:
             continue
         elif isinstance(value, bool):
@@ -203,7 +214,8 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -
         else:
             for each in value if isinstance(value, list | tuple) else (value,):
                 parts += [option, str(each)]
-    return " ".join(map(shlex.quote, parts))
+    parts += [part for change in changes for part in ("--set", change)]
+    return " ".join(map(shlex.quote, map(path_text, parts)))
 
 
 def _closing(answer: Answer, folder: Path, drawn: Sequence[Any]) -> str:

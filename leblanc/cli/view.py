@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from leblanc.cli.terminal.output import load
+from leblanc.cli.terminal.output import FORCE, SET, load
 from leblanc.core.contents import results_dir
 from leblanc.core.files import require_writable
 from leblanc.core.progress import working
@@ -58,20 +58,22 @@ def view(
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help=FORCE)] = False,
+    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Three-dimensional picture, film or browser page."""
     from leblanc.core.units import ANGULAR_SPEED, parse_option
     from leblanc.registry import answerer
 
-    machine = load(scene)
+    machine = load(scene, set_ or ())
     spin = None if speed is None else parse_option(speed, ANGULAR_SPEED, "--speed")
     _check_choices(screenshot, animate, frames, mode, window, browser, port)
     if browser:
         _serve(machine, spin, factor, host, port)
         return
     if not window:
-        screenshot = _target(machine, scene, screenshot, animate, out)
+        screenshot = _target(machine, scene, screenshot, animate, out, force)
     wave = None  # what has a film of its own
     with working("solving"):
         if (special := answerer("view", machine.rotor.kind)) is not None:
@@ -137,11 +139,16 @@ def _check_choices(
 
 
 def _target(
-    machine: Scene, source: Path, screenshot: Path | None, animate: Path | None, out: Path | None
+    machine: Scene,
+    source: Path,
+    screenshot: Path | None,
+    animate: Path | None,
+    out: Path | None,
+    force: bool,
 ) -> Path | None:
     """Where the picture goes, if there is one; whatever is to be written is tried."""
     if screenshot is None and animate is None:
-        screenshot = results_dir(machine.name, out, source, machine.digest) / "view.png"
+        screenshot = results_dir(machine.name, out, source, machine.digest, force=force) / "view.png"
     if screenshot is not None:
         require_writable(screenshot)
     if animate is not None:

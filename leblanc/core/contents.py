@@ -14,11 +14,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from itertools import count
 from pathlib import Path
 from typing import Any
 
 from leblanc.core.files import chosen_dir, native, out_dir, path_text, watched, writing
+from meshes.errors import InputError
 from meshes.files.foreign import open_regular
 
 NAME = "contents.json"
@@ -38,14 +38,10 @@ class Record:
     previous: dict[str, Any] = field(default_factory=dict)  #: what the record said before
     #: the folder and those above it that were not there before, the innermost first
     fresh: Sequence[Path] = ()
-    #: folder to which the results of another scene of the same name were moved; None if there were none
-    aside: Path | None = None
 
-    def open(
-        self, folder: Path, source: Path, state: str, fresh: Sequence[Path] = (), aside: Path | None = None
-    ) -> None:
+    def open(self, folder: Path, source: Path, state: str, fresh: Sequence[Path] = ()) -> None:
         """Take a folder; from now on its record says that this command has not finished there."""
-        self.folder, self.state, self.fresh, self.aside = folder, state, fresh, aside
+        self.folder, self.state, self.fresh = folder, state, fresh
         self.source = _seen_from(folder, source)
         self.previous, made = _read(folder), _made(folder)
         before = made.get(self.command, {})
@@ -65,8 +61,6 @@ class Record:
             with suppress(OSError):  # one that holds something stays, and those above it
                 for folder in self.fresh:
                     folder.rmdir()
-                if self.aside is not None:
-                    self.aside.rename(self.folder)
 
     def close(self) -> list[str]:
         """Take down what was written; what of it is no longer true is removed.
@@ -83,9 +77,6 @@ class Record:
         removed = [name for name in before if name not in files and _removed(folder, name, before[name])]
         self._write(made, files, finished=True)
         lines = [f"{folder}: removed {_some(removed)}, of an earlier {self.command}"] if removed else []
-        if self.aside is not None:
-            other = _read(self.aside).get("scene")
-            lines.append(f"{folder}: what {other} gave, a scene of the same name, is now in {self.aside}")
         for command, entry in made.items():
             there = [name for name in entry["files"] if name not in files and _file(folder, name)]
             if there and not entry["current"]:
@@ -136,22 +127,24 @@ def recording(command: str) -> Iterator[Record]:
         _RECORD.reset(token)
 
 
-def results_dir(name: str, out: Path | None, source: Path, state: str, *files: str) -> Path:
+def results_dir(
+    name: str, out: Path | None, source: Path, state: str, *files: str, force: bool = False
+) -> Path:
     """Folder for what a command makes of a scene, as `leblanc.core.files.out_dir`.
 
-    `state` is the scene's fingerprint. Where `out` is not given and the folder holds what another scene of
-    the same name gave, whose file is still there, that folder is moved aside first: to its name with the next
-    free number behind it.
+    `state` is the scene's fingerprint. An `InputError` where neither `out` nor `force` is given and the
+    folder holds what another scene of the same name gave, whose file is still there.
     """
     folder = chosen_dir(name, out)
-    aside = _free_beside(folder) if out is None and _is_of_another(folder, source) else None
-    if aside is not None:
-        folder.rename(aside)
+    if out is None and not force and _is_of_another(folder, source):
+        other = _read(folder)["scene"]
+        allowed = f"another folder, or --force: this one holds what {other} gave, a scene of the same name"
+        raise InputError("--out", path_text(folder), allowed)
     fresh = [path for path in (folder, *folder.parents) if not path.exists()]
     out_dir(name, out, *files)
     record = _RECORD.get()
     if record is not None:
-        record.open(folder, source, state, fresh, aside)
+        record.open(folder, source, state, fresh)
     return folder
 
 
@@ -162,12 +155,6 @@ def _is_of_another(folder: Path, source: Path) -> bool:
         return False
     file = _file(folder, other)
     return file is not None and not (source.exists() and file.samefile(source))
-
-
-def _free_beside(folder: Path) -> Path:
-    """The folder's name with the first number behind it that is free."""
-    names = (folder.with_name(f"{folder.name} ({number})") for number in count(2))
-    return next(path for path in names if not path.exists())
 
 
 def _read(folder: Path) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import Literal, TextIO
 
 from leblanc.core.blocks import Block, Checks, Headline, Notes, Table, Words, flat
 
-_WIDTH = 110  # characters of a line where there is no terminal
+_WIDTH = 100  # characters of a line where there is no terminal
 
 
 def show(blocks: Iterable[Block]) -> None:
@@ -68,7 +68,7 @@ def say(text: str) -> None:
 def print_table(
     rows: Iterable[Sequence[str]], head: Sequence[str] = (), right: bool = False, indent: int = 0
 ) -> None:
-    """Print a table on stdout; on a terminal its texts are wrapped to fit, elsewhere to 110 characters.
+    """Print a table on stdout; on a terminal its texts are wrapped to fit, elsewhere to 100 characters.
 
     Without a head it has labels and values; `right` aligns all columns but the first to the right.
     """

@@ -145,8 +145,16 @@ _JOIN = r"(?:\s*[*/]\s*|\s+)"
 _GROUP = rf"\(\s*{_FACTOR}(?:{_JOIN}{_FACTOR})*\s*\){_POWER}"
 _UNIT = rf"(?:1?\s*/\s*)?(?:{_FACTOR}|{_GROUP})(?:{_JOIN}(?:{_FACTOR}|{_GROUP}))*"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*", re.ASCII)
-_SPELLINGS = str.maketrans({"·": "*", "⋅": "*", "²": "^2", "³": "^3"})
+_SPELLINGS = str.maketrans({"·": "*", "⋅": "*", TIMES: "*", "²": "^2", "³": "^3"})
+# Powers as figures behind a unit, "kg/m3", and factors without a sign between them, "Ns/m" and "gmm".
+_FIGURE = re.compile(r"(?<=[A-Za-zµ])([2-4])(?![\d.])")
+_GLUED = re.compile(
+    r"(?<![A-Za-zµ])(?:([kMm]?N|[kM]?Pa|mPa)(?=[cms])(mm|cm|m)?(s)?|(k?g|mg)(mm|cm|m))(\^[2-4])?(?![A-Za-zµ])"
+)
+_SIMPLE = rf"{_FACTOR}(?:{_JOIN}{_FACTOR})*"
+_PRODUCT = re.compile(rf"\s*({_NUMBER})\s*({_SIMPLE})\s*\*\s*({_NUMBER})\s*({_SIMPLE})\s*", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d")
+_THOUSANDS = re.compile(r"\s*[+-]?\d{1,3},\d{3}(?!\d)")
 _TURNS_A_MINUTE = re.compile(r"(?:RPM|Rpm|(?:rev|r|U)\s*/\s*min)")  # as nameplates have it
 _SIGN = re.compile(r"\s*(\*\*|[*/^])\s*")
 _HERTZ = re.compile(r"(?<![A-Za-z])([A-Za-z]*?)(?:Hz|hertz)(?![A-Za-z])")
@@ -222,7 +230,7 @@ def unit_for(dimension: Dimension, *values: float) -> Unit:
 
 def unit_typed(value: object, dimension: Dimension) -> Unit:
     """Unit in which a value free of faults stands in a file, its SI unit where it is a plain number."""
-    match = _QUANTITY.fullmatch(value.translate(_SPELLINGS)) if isinstance(value, str) else None
+    match = _matched(value) if isinstance(value, str) else None
     if match is None or not match[2] or dimension is TEMPERATURE:
         return Unit(dimension.unit, 1.0)
     return Unit(match[2], 1.0 / parse(f"1 {match[2]}", dimension))
@@ -231,6 +239,16 @@ def unit_typed(value: object, dimension: Dimension) -> Unit:
 def with_unit(value: float, dimension: Dimension) -> str:
     """An SI value for print in the unit that a person would write."""
     return unit_for(dimension, value).text(value)
+
+
+def change_words(size: float, without: float) -> str:
+    """How much a size differs from that without something, in per cent; empty where that is not known."""
+    if not (0.0 < without < math.inf and math.isfinite(size)):
+        return ""
+    share = 100.0 * (size / without - 1.0)
+    if abs(share) < 0.05:
+        return "no change"
+    return f"{'+' if share > 0.0 else MINUS}{abs(share):.{1 if abs(share) < 10.0 else 0}f} %"
 
 
 def in_rpm(speed: float, missing: str = NOT_FOUND) -> str:
@@ -340,7 +358,7 @@ def _in_unit_typed(allowed: str, typed: object) -> str:
     """The bounds in the unit typed."""
     if isinstance(typed, list | tuple):
         typed = next((entry for entry in typed if isinstance(entry, str)), None)
-    match = _QUANTITY.fullmatch(typed.translate(_SPELLINGS)) if isinstance(typed, str) else None
+    match = _matched(typed) if isinstance(typed, str) else None
     unit = match[2] if match else None
     if not unit or len(str(typed)) > _LONGEST:
         return allowed
@@ -391,12 +409,69 @@ def parse_option(text: str | float, dimension: Dimension, field: str) -> float:
     return parse(number, dimension, field)
 
 
+def _matched(text: str) -> re.Match[str] | None:
+    """Number and unit of a text, the unit with ^, * and /; None where it is no quantity.
+
+    Two quantities with a sign between them, "400 g * 230 mm", are one.
+    """
+    if len(text) > _LONGEST:
+        return None
+    spelled = text.translate(_SPELLINGS)
+    number = re.match(rf"\s*{_NUMBER}", spelled)
+    if number is None:
+        return None
+    rest = _GLUED.sub(_parted, _FIGURE.sub(r"^\1", spelled[number.end() :]))
+    spelled = number[0] + rest
+    if (two := _PRODUCT.fullmatch(spelled)) is not None:
+        spelled = f"{float(two[1]) * float(two[3])!r} {two[2]} {two[4]}"
+    return _QUANTITY.fullmatch(spelled)
+
+
+def _parted(found: re.Match[str]) -> str:
+    """Factors with a sign between them; behind a stroke all of them are below it."""
+    *factors, power = found.groups()
+    product = "*".join(filter(None, factors)) + (power or "")
+    return f"({product})" if found.string[: found.start()].rstrip().endswith("/") else product
+
+
+def _meant(text: str, dimension: Dimension) -> str:
+    """How a text that cannot be read may be written instead, to follow what is allowed."""
+    comma, written = (
+        _DECIMAL_COMMA.match(text) is not None,
+        re.sub(r"(?<=[A-Za-z\d])[.-](?=[A-Za-z])", "*", text),
+    )
+    tries = [text.replace(",", ".", 1)] if comma else [written] if written != text else []
+    if _THOUSANDS.match(text):
+        tries.append(text.replace(",", "", 1))
+    said = "; the decimal sign is a point" if comma else ""
+    for k, written in enumerate(tries):
+        if _matched(written) is None or not _is_one(written, dimension):
+            continue
+        before = (
+            ", as in"
+            if comma and k == 0
+            else ", and thousands have no sign:"
+            if comma
+            else "; it may be written"
+        )
+        said += f'{before} "{written.strip()}"'
+    return said
+
+
+def _is_one(text: str, dimension: Dimension) -> bool:
+    """Whether a text is a quantity of that kind."""
+    try:
+        parse(text, dimension)
+    except InputError:
+        return False
+    return True
+
+
 def _from_text(text: str, dimension: Dimension, field: str) -> float:
     """Number and unit to SI."""
-    match = _QUANTITY.fullmatch(text.translate(_SPELLINGS)) if len(text) <= _LONGEST else None
+    match = _matched(text)
     if match is None:
-        hint = "; the decimal sign is a point" if _DECIMAL_COMMA.match(text) else ""
-        raise InputError(field, text[:_LONGEST], dimension.allowed + hint)
+        raise InputError(field, text[:_LONGEST], f"{dimension.allowed}{_meant(text, dimension)}")
     number, unit = float(match[1]), match[2] or ""
     if not unit and dimension.unit:
         raise InputError(field, text, f"{dimension.allowed}; this text has no unit")

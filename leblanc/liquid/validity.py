@@ -160,7 +160,7 @@ def _free(scene: Scene) -> Iterator[Note]:
     """Directions in which nothing holds the machine."""
     assert isinstance(scene.rotor, TwoPlaneRotor | TubRotor)
     if ways := _free_ways(scene.rotor.machine().system()):
-        field, cure = _CURES[scene.rotor.kind]
+        field, cure = _cure(scene.rotor, scene.gravity)
         yield doubt(DoubtCode.FREE, field, f"it takes {cure}; nothing holds the machine {ways}", "")
 
 
@@ -179,6 +179,23 @@ _CURES = {
 }
 
 
+_HANGER = 0.3  # m, of a spring in the example
+
+
+def _cure(rotor: TwoPlaneRotor | TubRotor, gravity: float) -> tuple[str, str]:
+    """Field that holds a rotor, and what it takes; what a tub that hangs is held by across its springs."""
+    field, cure = _CURES[rotor.kind]
+    if not isinstance(rotor, TubRotor) or rotor.axis == "vertical" or not rotor.springs:
+        return field, cure
+    force = (rotor.tub_mass + rotor.drum_mass) * gravity / len(rotor.springs)
+    hangs = f"{with_unit(_HANGER, LENGTH)} hold with {number(force / _HANGER)} N/m each"
+    return (
+        field,
+        f"{cure} (springs that a tub hangs from hold it across themselves too, with their force "
+        f"over their length: {number(force)} N of its weight on {hangs})",
+    )
+
+
 def moves_freely(scene: Scene) -> bool:
     """Whether nothing holds the axis in some direction."""
     rotor = scene.rotor
@@ -190,7 +207,7 @@ def require_supported(scene: Scene) -> None:
     if not moves_freely(scene):
         return
     assert isinstance(scene.rotor, TwoPlaneRotor | TubRotor)
-    field, cure = _CURES[scene.rotor.kind]
+    field, cure = _cure(scene.rotor, scene.gravity)
     ways = _free_ways(scene.rotor.machine().system())
     allowed = f"{cure}: nothing holds the machine {ways}, and an axis that moves freely has no amplitude"
     raise InputError(field, f"free {ways}", allowed)

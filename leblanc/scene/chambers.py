@@ -372,7 +372,10 @@ class Baffles(Part):
 
     count: Annotated[int, whole(1, MAX_BAFFLES)] = Field(description="how many there are")
     tip_radius: Annotated[float, quantity(units.LENGTH, 0.0, 1e3)] = Field(
-        0.0, description="distance of the inner edge from the axis"
+        0.0, description="distance of the inner edge from the axis; or height"
+    )
+    height: Annotated[float | None, quantity(units.LENGTH, 0.0, 1e3)] = Field(
+        None, description="extent from the outer edge towards the axis, in place of tip_radius"
     )
     wall_gap: Annotated[float, quantity(units.LENGTH, 0.0, 1e3)] = Field(
         0.0, description="distance of the outer edge from the wall"
@@ -385,6 +388,16 @@ class Baffles(Part):
         description="coefficient of the head that the flow loses at each, referred to the mean depth; by "
         "depth and flow if left out",
     )
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """One of both says where the plates end."""
+        if {"tip_radius", "height"} <= set(given):
+            yield Conflict(("height",), "left out where tip_radius is given")
+
+    def tip(self, radius: float) -> float:
+        """Distance of the inner edge from the axis in a chamber of that radius, m."""
+        return self.tip_radius if self.height is None else radius - self.wall_gap - self.height
 
 
 class SectionRule:
@@ -476,14 +489,26 @@ class Chamber(Part):
         if radius is None:
             return
         inner, plates = values.get("inner_radius"), values.get("baffles")
-        if plates is not None and plates.tip_radius >= radius - plates.wall_gap:
+        if plates is not None and plates.tip(radius) >= radius - plates.wall_gap:
             text = f"a tip_radius below radius - wall_gap, {radius - plates.wall_gap:g} m"
+            yield Conflict(("baffles",), text if plates.height is None else "plates of a height above 0")
+        elif plates is not None and plates.tip(radius) < -_ROUNDING * radius:
+            text = f"plates of a height up to radius - wall_gap, {radius - plates.wall_gap:g} m"
             yield Conflict(("baffles",), text)
         if inner is not None and inner >= radius:
             yield Conflict(("inner_radius",), f"below the radius of the chamber, {radius:g} m")
         elif {"inner_radius", "height", "volume"} <= values.keys():
             area = math.pi * (radius - inner) * (radius + inner)
             yield from _in_capacity(values["volume"], area * values["height"])
+
+    def implied(self) -> dict[str, Any]:
+        """Where plates end whose height is given."""
+        plates, radius = self.baffles, self.radius
+        if plates is None or plates.height is None or radius is None:
+            return {}
+        ended = plates.model_copy()  # the file says their height alone
+        ended.__dict__["tip_radius"] = max(plates.tip(radius), 0.0)
+        return {"baffles": ended}
 
     @cached_property
     def shape(self) -> ChamberSection | None:

@@ -6,10 +6,10 @@ import re
 from pathlib import Path
 
 from leblanc.scene.scene import Scene, load_scene
-from leblanc.scene.schema.load import meant, read_toml
+from leblanc.scene.schema.load import meant
 from meshes.errors import InputError
 
-_COMMENT = re.compile(r"#\s*(.+)")
+_SENTENCE, _CITATION = re.compile(r"\.(?:\s|$)"), re.compile(r" \[[^]]*\]")
 
 
 def _folder() -> Path:
@@ -69,10 +69,11 @@ def example(name: str) -> Scene:
 
 
 def example_title(name: str) -> str:
-    """What an example is, on one line: the name in its file, or its first comment."""
-    path = example_path(name)
-    title = read_toml(path).get("name")
-    if isinstance(title, str):
-        return title
-    comment = _COMMENT.match(path.read_text(encoding="utf-8"))
-    return comment[1] if comment else ""
+    """What an example is, in the first sentence of its file."""
+    said = []
+    for line in example_path(name).read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#"):
+            break
+        said.append(line.strip("# "))
+    sentence = _SENTENCE.split(_CITATION.sub("", " ".join(said)))[0].removesuffix(".")
+    return f"{sentence}."

@@ -301,7 +301,7 @@ def _baffle(baffles: Baffles, k: int) -> tuple[Value, ...]:
     return (
         Value(f"{k + 1}"),
         Value(f"{baffles.count}", (f"{at}.count",)),
-        Value(number(baffles.tip_radius * MM), (f"{at}.tip_radius",)),
+        Value(number(baffles.tip_radius * MM), (f"{at}.tip_radius", f"{at}.height")),
         Value(number(baffles.wall_gap * MM), (f"{at}.wall_gap",)),
         Value(degrees(baffles.first_angle), (f"{at}.first_angle",)),
         Value("by depth and flow" if baffles.loss is None else number(baffles.loss), (f"{at}.loss",)),
@@ -337,12 +337,13 @@ def _held(model: Model) -> list[Row]:
 
 
 def _runup(plan: Runup) -> list[Row]:
+    ramp = "runup.ramp_time" if plan.ramp_time is not None else ""
     found = [
-        row("Run-up from", rpm(plan.start), "runup.start"),
-        row("Run-up to", rpm(plan.stop), "runup.stop"),
+        row("Run-up from", rpm(plan.start), "runup.start", ramp),
+        row("Run-up to", rpm(plan.stop), "runup.stop", ramp),
     ]
     if plan.rate is not None:
-        found.append(row("Run-up rate", f"{number(plan.rate)} rad/s²", "runup.rate"))
+        found.append(row("Run-up rate", f"{number(plan.rate)} rad/s²", "runup.rate", ramp))
     if plan.motor is not None:
         motor, curve = plan.motor, curve_words(plan.motor.speeds, plan.motor.torques)
         found += [

@@ -711,7 +711,8 @@ def _kinds(law: object) -> list[str]:
 def runup_content(plan: Runup) -> dict[str, Any]:
     """How the speed goes and how that is resolved."""
     usual = {"bore": "none", "capture": "carried"}
-    return plan.model_dump(exclude={key for key, value in usual.items() if getattr(plan, key) == value})
+    left_out = {key for key, value in usual.items() if getattr(plan, key) == value}
+    return plan.model_dump(exclude={"ramp_time", *left_out})  # the rate says it
 
 
 def machine_content(scene: Scene) -> dict[str, Any]:

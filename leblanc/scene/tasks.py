@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import Field, PlainValidator
 
 from leblanc.core import units
-from leblanc.scene.schema.part import Conflict, Part
+from leblanc.scene.schema.part import Conflict, Part, allowed_at
 from leblanc.scene.schema.rules import (
     SPEED,
     Inertia,
@@ -304,17 +304,26 @@ BORES = ("none", "enstrophy")
 CAPTURES = ("carried", "drum", "riding")
 
 
+_IMPLIED: Any = None  # a value that others say where it is left out
+
+
 class Runup(Part):
     """A ramp of the spin speed, then held; or the speed that a motor reaches."""
 
-    start: Speed = Field(description="speed at the beginning")
-    stop: Speed = Field(description="speed that the ramp reaches, above start")
-    rate: Annotated[float | None, quantity(units.ANGULAR_ACCELERATION, 1e-9, 1e9)] = Field(
+    start: Speed = Field(
+        _IMPLIED, description="speed at the beginning; of start, stop, rate and ramp_time three"
+    )
+    stop: Speed = Field(_IMPLIED, description="speed that the ramp reaches, above start")
+    rate: Annotated[float | None, PlainValidator(_RATE)] = Field(
         None, description="at which the speed rises; left out where a motor drives"
+    )
+    ramp_time: Annotated[float | None, quantity(units.TIME, 1e-9, 1e9)] = Field(
+        None, description="that the ramp takes; left out where a motor drives"
     )
     motor: Motor | None = Field(None, description="that drives the rotor in place of a given rate")
     duration: Annotated[float, quantity(units.TIME, 1e-9, 1e9)] = Field(
-        description="of ramp and hold together"
+        _IMPLIED,
+        description="of ramp and hold together; of the ramp alone if left out, given where a motor drives",
     )
     cells: Annotated[int, whole(8, 65536)] = Field(128, description="of each liquid layer round its wall")
     back: Truth = Field(False, description="true: down again at the same rate")
@@ -335,14 +344,60 @@ class Runup(Part):
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """The ramp rises; a motor takes the place of its rate."""
-        if {"start", "stop"} <= values.keys() and values["stop"] <= values["start"]:
-            yield Conflict(("stop",), f"above runup.start, {values['start']:g} rad/s")
-        if "motor" not in given:
-            if "rate" not in given:
-                yield Conflict(("rate",), f"given: {_RATE.allowed}")
-            return
-        if "rate" in given:
-            yield Conflict(("rate",), "left out where runup.motor is given")
-        if given.get("back") is True:
-            yield Conflict(("back",), "false where runup.motor is given")
+        """The ramp rises, of which three values say the fourth; a motor takes the place of its rate."""
+        if "motor" in given:
+            for key in ("rate", "ramp_time"):
+                if key in given:
+                    yield Conflict((key,), "left out where runup.motor is given")
+            for key in ("start", "stop", "duration"):
+                if key not in given:
+                    yield Conflict((key,), f"given: {allowed_at(cls.model_fields[key])}")
+            if given.get("back") is True:
+                yield Conflict(("back",), "false where runup.motor is given")
+        else:
+            left = [key for key in _RAMP if key not in given]
+            if not left:
+                yield Conflict(("ramp_time",), "left out where start, stop and rate are given")
+            elif len(left) > 1:
+                # What most files say.
+                key = next(key for key in ("start", "stop", "rate") if key in left)
+                text = f"given: {allowed_at(cls.model_fields[key])}"
+                more = "; duration is that of ramp and hold together" if "duration" in given else ""
+                yield Conflict((key,), f"{text}; three of {', '.join(_RAMP)} say the fourth{more}")
+            elif set(_RAMP) - set(left) <= values.keys():
+                values = dict(values) | _ramp(values)
+                if left[0] in ("start", "stop") and not _FIRST <= values[left[0]] <= _LAST:
+                    text = f"such that the ramp runs from {_FIRST:g} to {_LAST:g} rad/s"
+                    yield Conflict(("ramp_time",), text)
+                    return
+        start, stop, rate = (values.get(key) for key in _RAMP[:3])
+        if start is not None and stop is not None and stop <= start:
+            yield Conflict(("stop",), f"above runup.start, {start:g} rad/s")
+        elif rate is not None and "rate" not in given and not _RATE.low <= rate <= _RATE.high:
+            yield Conflict(("ramp_time",), f"such that the rate is {_RATE.allowed}")
+
+    def implied(self) -> dict[str, Any]:
+        """The fourth value of the ramp, and its time where nothing is held."""
+        if self.motor is not None:
+            return {}
+        found = _ramp(self.__dict__)
+        if "duration" in self.model_fields_set:
+            return found
+        whole = self.ramp_time
+        if whole is None and self.rate is not None:
+            whole = (self.stop - self.start) / self.rate
+        return found | {"duration": whole}
+
+
+_RAMP = ("start", "stop", "rate", "ramp_time")
+_FIRST, _LAST = 1e-6, 1e6  # rad/s
+
+
+def _ramp(values: Mapping[str, Any]) -> dict[str, Any]:
+    """What of start, stop and rate is left out of a ramp; nothing where its time is."""
+    start, stop, rate, time = (values[key] for key in _RAMP)
+    if time is None:
+        return {}
+    if rate is None:
+        return {"rate": (stop - start) / time}
+    return {"start": stop - rate * time} if start is None else {"stop": start + rate * time}

@@ -162,6 +162,10 @@ class RunupMachine(Protocol):
         """Angle by which the drum has turned, rad."""
 
     @property
+    def velocity(self) -> Array:
+        """Rates of change of the rotor's coordinates, shape (n,)."""
+
+    @property
     def lost_inertia(self) -> float:
         """Moment of inertia about the axis that has left the drum by now, kg m^2."""
 

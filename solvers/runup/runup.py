@@ -34,8 +34,9 @@ from solvers.runup.machine import (
     RunupModel,
     Transfer,
 )
-from solvers.runup.path import Recorder, RotorPath, fastest_frequency
-from solvers.runup.samples import highest, known_legs, legs, marked
+from solvers.runup.path import ROWS, Recorder, RotorPath, fastest_frequency
+from solvers.runup.programme import FLOOR as FLOOR_SHARE
+from solvers.runup.samples import Leg, highest, known_legs, legs, marked
 from solvers.runup.shedding import Shedding
 from solvers.runup.state import WORKS
 from solvers.slices import step_budget
@@ -534,6 +535,104 @@ def _advance(
             return outcome, brought
         brought += fallen
 
+
+_SLIVER = 1e-9  # of a step: less of a leg is no step of its own
+_CURVE = np.zeros((2, 0))  # of a speed that is given
+
+
+class SteppedRunup:
+    """A run-up that goes on step by step: by its own drive, to a given speed, or under a given torque."""
+
+    def __init__(
+        self,
+        system: RotorSystem,
+        fills: Sequence[Fill],
+        drive: Drive,
+        friction: Friction,
+        gravity: float,
+        numerics: RunupNumerics,
+        model: RunupModel = couple,
+        start: float | None = None,
+    ) -> None:
+        """As `run_up`; `start` is the spin speed at the beginning in place of the drive's, rad/s."""
+        spin = float(drive.corners()[1, 0]) if start is None else start
+        how = numerics.cells, numerics.dispersion, numerics.enstrophy, numerics.handover
+        self.machine = model(system, fills, spin, friction, gravity, *how)
+        self.floor = FLOOR_SHARE * highest(drive)  #: a drum that turns more slowly stands, rad/s
+        self.acceleration = np.zeros(len(system.coordinates))  #: of the rotor's coordinates
+        self._numerics, self._fastest = numerics, fastest_frequency(system)
+        self._shedding = Shedding(system)
+        self._leg: Leg | None = None
+        self._legs = legs(drive, self.machine, numerics.samples)
+        self.machine.follow(ROWS)
+        self._steps = np.zeros((0, 2 + len(system.coordinates)))
+        self._longest = float(drive.corners()[0, -1]) / (numerics.samples - 1)
+
+    def on(self, step: float) -> Outcome:
+        """Go on by its own drive, s; where that has come to its end the speed is held."""
+        end, sliver = self.machine.time + step, _SLIVER * step
+        while self.machine.time < end - sliver:
+            if self._leg is None or self.machine.time >= self._leg.stop:
+                self._leg = next(self._legs, None)
+                if self._leg is None:
+                    return self._given(end, 0.0, _CURVE, 0.0)
+                self.machine.switch()
+            leg = self._leg
+            outcome = self._go(leg.stop if leg.stop < end + sliver else end, leg.rate)
+            if outcome is Outcome.STOPPED and leg.coasts:
+                self._leg = None  # a drum that comes to a stand has ended its coast
+            elif outcome is not Outcome.DONE:
+                return outcome
+        return Outcome.DONE
+
+    def to(self, step: float, speed: float) -> Outcome:
+        """Go on by a step, s, in which the spin changes to a speed, rad/s, along a straight line."""
+        rate = (max(speed, self.floor) - self.machine.spin) / step
+        return self._given(self.machine.time + step, rate, _CURVE, 0.0)
+
+    def under(self, step: float, torque: float, inertia: float) -> Outcome:
+        """Go on by a step, s, under a torque, N m; `inertia` of rotor and motor about the axis, kg m^2."""
+        curve = np.array([[0.0, 1.0], [torque, torque]])  # level beyond its ends
+        return self._given(self.machine.time + step, 0.0, curve, inertia)
+
+    def _given(self, end: float, rate: float, curve: Array, inertia: float) -> Outcome:
+        """Advance to a time under a curve of torque, in pieces no longer than a leg of the drive."""
+        self.machine.drive(curve, inertia)
+        begin = self.machine.time
+        pieces = max(1, math.ceil((end - begin) / self._longest))
+        for k in range(1, pieces + 1):
+            self.machine.switch()
+            outcome = self._go(end if k == pieces else begin + (end - begin) * k / pieces, rate)
+            if outcome is not Outcome.DONE:
+                return outcome
+        return Outcome.DONE
+
+    def _go(self, end: float, rate: float) -> Outcome:
+        """Advance to a time."""
+        machine, numerics = self.machine, self._numerics
+        fast = max(machine.spin, machine.spin + rate * (end - machine.time), self._fastest)
+        most = step_budget(end - machine.time, fast, numerics.cells, numerics.courant)
+        for stop in self._shedding.pieces(machine, end):
+            outcome, _ = _advance(machine, stop, rate, numerics.courant, most, None)
+            if outcome is not Outcome.DONE:
+                return outcome
+        self._look(2.0 * np.pi / (_FINE * fast))
+        return Outcome.DONE
+
+    def _look(self, width: float) -> None:
+        """Take the acceleration from a cubic through the steps of the last time of such a width, s."""
+        columns, now = self._steps.shape[1], self.machine.time
+        steps = np.concatenate([self._steps, self.machine.followed()[:, :columns]])
+        recent = max(int(np.count_nonzero(steps[:, 0] >= now - width)), _FEWEST)
+        self._steps = steps[-recent:]
+        time, places = (self._steps[:, 0] - now) / width, self._steps[:, 2:]
+        if len(time) >= _FEWEST:
+            cubic = np.linalg.lstsq(np.vander(time, 4), places, rcond=None)[0]
+            self.acceleration = 2.0 * cubic[1] / width**2
+
+
+_FEWEST = 5  # steps through which a cubic goes
+_FINE = 64  # of a turn: the part of it from which the acceleration is taken
 
 # Found from random run-ups with both models: see the theory page.
 _LAG = 2.0

@@ -12,6 +12,7 @@ import pytest
 from leblanc.cli import main
 from leblanc.core import files
 from leblanc.core.contents import NAME, recording, results_dir
+from meshes.errors import InputError
 
 Capture = pytest.CaptureFixture[str]
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -65,35 +66,26 @@ def test_commands_keep_what_another_scene_gave(
     before = report.stat().st_mtime_ns
     capsys.readouterr()
 
-    assert main(["run", "b.toml"]) == 0
-    aside = "out/Spindle (2)"
-    told = f"out/Spindle: what ../../a.toml gave, a scene of the same name, is now in {aside}"
-    assert told in capsys.readouterr().err.splitlines()
-    assert (Path(aside) / report.name).stat().st_mtime_ns == before
+    for command in (["run", "b.toml"], ["view", "b.toml"]):
+        assert main(command) == 2
+        told = capsys.readouterr().err.strip().splitlines()
+        assert len(told) == 1 and "must be another folder, or --force" in told[0]
+        assert "leblanc: --out = 'out/Spindle'" in told[0] and "what ../../a.toml gave" in told[0]
+    assert report.stat().st_mtime_ns == before
+    assert main(["run", "b.toml", "--out", "elsewhere"]) == 0
+    assert main(["run", "b.toml", "--force"]) == 0
     assert made(report.parent)["run"]["scene"] == "../../b.toml"
-
-    assert main(["run", "a.toml", "--out", "elsewhere"]) == 0
     assert main(["run", "b.toml"]) == 0  # the same again
     shutil.move("b.toml", "c.toml")
     assert main(["run", "c.toml"]) == 0  # the same file by another name: nothing else could be overwritten
-    assert {path.name for path in Path("out").iterdir()} == {"Spindle", "Spindle (2)"}
-
-
-def test_what_another_scene_gave_comes_back_from_a_command_that_fails_at_once(folder: Path) -> None:
-    does("run", "a.toml", "1", {"run.txt": "a"})
-    with pytest.raises(ValueError, match="at once"), recording("run"):
-        results_dir("Rig", None, Path("b.toml"), "2")
-        raise ValueError("at once")
-    assert (folder / "run.txt").read_text(encoding="utf-8") == "a"
-    assert [path.name for path in folder.parent.iterdir()] == ["Rig"]
+    assert [path.name for path in Path("out").iterdir()] == ["Spindle"]
 
 
 def test_names_that_differ_only_where_file_systems_do_not(folder: Path) -> None:
     with recording("run"):
-        first = results_dir("a/b", None, Path("a.toml"), "1")
-    with recording("run") as record:
-        assert results_dir("a:b", None, Path("b.toml"), "1") == first
-        assert record.aside == first.with_name(f"{first.name} (2)")
+        results_dir("a/b", None, Path("a.toml"), "1")
+    with recording("run"), pytest.raises(InputError, match=r"what \.\./\.\./a\.toml gave"):
+        results_dir("a:b", None, Path("b.toml"), "1")
 
 
 def test_a_link_to_a_scene_is_that_scene(folder: Path) -> None:

@@ -315,6 +315,9 @@ def _words() -> Iterator[Case]:
         f"layer {_scene('horizontal_rig')} --chamber 2 --whirl-speed 1000rpm --whirl-amplitude 0.1mm --json",
     )
     yield _case("outputs-run", "outputs run --json")
+    yield _case("export-csv", "export small/runup.toml --to csv --decimal comma --out out --json")
+    yield _case("export-statespace", f"export {_scene('centrifuge')} --to statespace --out out --json")
+    yield _case("words-export", f"export {_scene('centrifuge')} --to statespace --out out")
     yield _case("words-layer-duration", f"{_WHIRL} --model long_wave --cells 32 --duration 2")
     yield _case("words-sweep", "sweep small/centrifuge_shares.toml --workers 0")
     yield _case("words-view", "view small/runup.toml --screenshot view.png", needs="screen")
@@ -362,6 +365,8 @@ def _wrong() -> Iterator[Case]:
         "optimise-exciter": f"optimise {table}",
         "map-magnetic": f"map {pump}",
         "runup-magnetic": f"runup {pump}",
+        "export-format": f"export {rig} --to ods",
+        "export-gravity": f"export {rig} --to statespace",
         "optimise-magnetic": f"optimise {pump}",
         "compare-magnetic": f"compare {pump} --models statics",
         **{

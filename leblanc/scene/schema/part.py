@@ -135,7 +135,13 @@ class Part(BaseModel):
             raise ValidationError.from_exception_data(
                 cls.__name__, [_line(conflict, given) for conflict in found]
             )
+        if made is not given:
+            made.__dict__.update(made.implied())
         return made
+
+    def implied(self) -> dict[str, Any]:
+        """Values of keys that follow from others, in SI units; a file does not say them."""
+        return {}
 
 
 class _Signed:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
+from leblanc.core.units import Dimension
 from leblanc.scene.schema.load import field_path, meant
 from leblanc.scene.schema.part import Part, parts_of, rule_of
 from leblanc.scene.schema.rules import Entries, Refused, Several
@@ -175,3 +176,30 @@ def with_values(table: Mapping[str, Any], changes: Iterable[tuple[Keys, Any]]) -
             node = node[key]
         node[keys[-1]] = value
     return changed
+
+
+def values_of(part: Part, *place: str | int) -> Iterator[tuple[str, Any, Dimension | None]]:
+    """Every value of a table and of those below it: its path, in SI units, and what it measures.
+
+    Defaults and what follows from other values as well, lists of numbers whole.
+    """
+    for name, field in type(part).model_fields.items():
+        value, rule = getattr(part, name), rule_of(field)
+        if value in (None, ()) or (name == "kind" and part.USUAL_KIND):
+            continue
+        tables = value if isinstance(value, tuple) else (value,)
+        if all(isinstance(table, Part) for table in tables):
+            for k, table in enumerate(tables):
+                yield from values_of(table, *place, name, *([k] if isinstance(value, tuple) else []))
+            continue
+        written = getattr(rule, "written", lambda value: list(value) if isinstance(value, tuple) else value)
+        said = written(value)
+        if isinstance(said, Mapping):
+            inside = getattr(getattr(rule, "table", None), "model_fields", {})
+            for key, each in said.items():
+                within = rule_of(inside[key]) if key in inside else None
+                yield field_path((*place, name, key)), each, getattr(within, "dimension", None)
+            continue
+        rules = (rule, getattr(rule, "each", None), entry_rule(field.annotation))
+        units = (getattr(one, "dimension", None) for one in rules)
+        yield field_path((*place, name)), said, next((unit for unit in units if unit is not None), None)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, PlainValidator
 
@@ -41,12 +41,25 @@ class Quantity:
             f"{self.dimension.allowed}, {zero}from {written_out(self.low)} to {written_out(self.high)}{unit}"
         )
 
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The same in JSON schema."""
+        return {"type": ["number", "string"]}
+
     def __call__(self, value: object) -> float:
         """Value in SI units."""
         number = parse(value, self.dimension) + 0.0  # a negative zero becomes zero
         if self.low <= number <= self.high or (self.or_zero and number == 0.0):
             return number
         raise Refused(self.allowed)
+
+
+_COUNTS = {"two": 2, "three": 3}
+
+
+def _array(each: dict[str, Any], count: int) -> dict[str, Any]:
+    """So many of one kind in JSON schema."""
+    return {"type": "array", "items": each, "minItems": count, "maxItems": count}
 
 
 @dataclass(frozen=True)
@@ -67,11 +80,16 @@ class Several:
         """What is allowed, as a text."""
         return f"{self.each.allowed}; or a list of {self.count}, along {self.directions}"
 
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The same in JSON schema."""
+        return {"anyOf": [self.each.schema, _array(self.each.schema, _COUNTS[self.count])]}
+
     def __call__(self, value: object) -> float | tuple[float, ...]:
         """Value or values in SI units."""
         if not isinstance(value, list | tuple):
             return self.each(value)
-        if len(value) != {"two": 2, "three": 3}[self.count]:
+        if len(value) != _COUNTS[self.count]:
             raise Refused(self.allowed)
         return tuple(map(self.each, value))
 
@@ -87,6 +105,11 @@ class Whole:
     def allowed(self) -> str:
         """What is allowed, as a text."""
         return f"a whole number from {self.low} to {self.high}"
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The same in JSON schema."""
+        return {"type": "integer", "minimum": self.low, "maximum": self.high}
 
     def __call__(self, value: object) -> int:
         """The number."""
@@ -105,6 +128,11 @@ class OneOf:
     def allowed(self) -> str:
         """What is allowed, as a text."""
         return "one of: " + ", ".join(self.names)
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The same in JSON schema."""
+        return {"enum": list(self.names)}
 
     def __call__(self, value: object) -> str:
         """The word."""
@@ -126,6 +154,11 @@ class Text:
         empty = "" if self.may_be_empty else ", not empty"
         return f"a text in quotes of at most {self.longest} printable characters{empty}"
 
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The same in JSON schema."""
+        return {"type": "string"}
+
     def __call__(self, value: object) -> str:
         """The text on one line."""
         if not isinstance(value, str):
@@ -141,6 +174,11 @@ class Flag:
     """True or false."""
 
     allowed: str = "true or false"
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The same in JSON schema."""
+        return {"type": "boolean"}
 
     def __call__(self, value: object) -> bool:
         """The flag."""
@@ -182,6 +220,11 @@ class Span:
         """What is allowed, as a text."""
         return f"a list of two, the second at least the first, each {self.each.allowed}"
 
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The same in JSON schema."""
+        return _array(self.each.schema, 2)
+
     def __call__(self, value: object) -> tuple[float, float]:
         """Both in SI units, whole numbers as they are."""
         if not isinstance(value, list | tuple) or len(value) != 2:
@@ -202,6 +245,12 @@ class Spans:
     def allowed(self) -> str:
         """What is allowed, as a text."""
         return f"{Span(self.each).allowed}; or a list of such pairs"
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The same in JSON schema."""
+        pair = Span(self.each).schema
+        return {"anyOf": [pair, {"type": "array", "items": pair}]}
 
     def __call__(self, value: object) -> tuple[float, float] | tuple[tuple[float, float], ...]:
         """The pair, or the pairs, in SI units."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from leblanc.core.blocks import Table
 from leblanc.core.notes import EXACT
-from leblanc.core.units import NOT_FOUND, RPM, in_rpm, number
+from leblanc.core.units import in_rpm, number
 from meshes.arrays import Array, Flags
 from meshes.quantity import Q
 from solvers.rotor.balls.two_plane_balance import Balancing
@@ -18,11 +18,6 @@ from solvers.rotor.balls.two_plane_balance import Balancing
 Rows = list[tuple[str, str]]
 
 # Angles from the liquid to the unbalance, then what they follow from and what they leave.
-HEAD = (
-    *("speed (rpm)", "angle, solved (deg)", "alpha_0 (deg)", "as published (deg)"),
-    *("lag delta (deg)", "k", "lambda_0"),
-)
-_SHOWN = 9  # speeds in the table of angles
 _OVER, _LIQUID = ("speed",), "from the liquid to the unbalance, positive with the spin"
 
 
@@ -152,26 +147,6 @@ def _vector(found: VectorModel) -> str:
         else ""
     )
     return met + last
-
-
-def vector_rows(speed: Array, found: VectorModel) -> list[tuple[str, ...]]:
-    """Angles at some of the speeds, as `HEAD` heads them."""
-    picked = sorted({round(k * (speed.size - 1) / (_SHOWN - 1)) for k in range(_SHOWN)})
-    return [
-        (
-            number(float(speed[k]) * RPM),
-            *(_known(math.degrees(float(values[k]))) for values in (found.angle, found.balance_angle)),
-            _known(math.degrees(float(found.printed_angle[k])), "not real"),
-            _known(math.degrees(float(found.lag[k]))),
-            _known(float(found.ratio[k])),
-            _known(float(found.unbalance_left[k])),
-        )
-        for k in picked
-    ]
-
-
-def _known(value: float, otherwise: str = NOT_FOUND) -> str:
-    return number(value) if math.isfinite(value) else otherwise
 
 
 def _upright(found: Upright) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any
 
-from leblanc.core.question import SCENE, ask
+from leblanc.core.question import SCENE, Option, ask
 
 if TYPE_CHECKING:
     from leblanc.core.answer import Answer
@@ -31,3 +32,12 @@ def explain(
     True
     """
     return ask(explain, "leblanc.studies.kinds:explain", locals())
+
+
+def present(
+    answer: Any,
+    *,
+    full: Annotated[bool, Option(("--full",)), "Every number, and why each model answers."] = False,
+) -> Any:
+    """What the command alone is asked for: twelve lines, or everything."""
+    return replace(answer, full=full) if hasattr(answer, "full") else answer

@@ -222,8 +222,64 @@ class ExplainAnswer(Explained):
     ) -> Annotated[tuple[str, ...], Q(text="analytical checks for which the scene lacks values")]:
         return self.closed_forms.lacking
 
+    #: what is printed: every number and why each model answers, or the main ones in twelve lines
+    full: bool = True
+
     def blocks(self) -> tuple[Block, ...]:
-        return Table(facts(self), shown="page"), Section("", described_blocks(self), shown="text")
+        said = described_blocks(self) if self.full else short_blocks(self)
+        return Table(facts(self), shown="page"), Section("", said, shown="text")
+
+
+_CHAMBERS, _SPANS = 2, 4  # rows of each kind among twelve lines
+
+
+def short_blocks(answer: ExplainAnswer) -> list[Block]:
+    """The main numbers, a line each."""
+    first, last = answer.speed_ratio
+    dry = answer.critical_speed_dry
+    rows = machine_rows(answer)[:2]
+    if math.isfinite(dry):
+        wet = f", {in_rpm(answer.critical_speed_wet)} with the liquid" if answer.layers else ""
+        spread = f"speeds {first:.3g} to {last:.3g} times that"
+        rows = [("critical speed", f"{in_rpm(dry)}{wet}; {spread}")]
+        rows.append(("damping ratio", f"{answer.damping_ratio:.4g} of the support"))
+    for k, layer in enumerate(answer.layers[:_CHAMBERS]):
+        left = len(answer.layers) - _CHAMBERS
+        more = f"; {left} more" if left > 0 and k == _CHAMBERS - 1 else ""
+        rows.append((f"chamber {k + 1}", f"{_short_layer(answer, k, layer)}{more}"))
+    if answer.captured_from is not None:
+        rows.append(("annular layer", f"above {in_rpm(answer.captured_from)}; gravity dominates below"))
+    if answer.whirl is not None:
+        size, speed = with_unit(answer.whirl.amplitude, LENGTH), in_rpm(answer.whirl.speed)
+        rows.append(("whirl", f"excites itself, to about {size} at {speed} (`leblanc map --cycles`)"))
+    spans = answer.models
+    rows += [_short_span(span) for span in spans[:_SPANS]]
+    if len(spans) > _SPANS:
+        rows.append(("", f"and {len(spans) - _SPANS} more ranges of speed"))
+    if answer.held is not None:
+        cost = f"{answer.held.speeds} speeds, {answer.held.words}"
+        rows.append(("in time", f"{cost}: no steady model is good enough there"))
+    told = Words("Every number, and why each model answers: leblanc explain --full")
+    return [Words(answer.name), Table(rows, indent=2), told]
+
+
+def _short_layer(answer: ExplainAnswer, chamber: int, layer: LayerExplanation | None) -> str:
+    """One chamber on a line."""
+    if layer is None:
+        return "empty"
+    added = f"adds {layer.added_mass_ratio:.3g} of the mass"
+    text = f"{100.0 * layer.numbers.fill:.3g} % full, {with_unit(layer.depth, LENGTH)} deep, {added}"
+    found = answer.wall_volumes
+    if found is None or not np.isfinite(found.wetting_volume[chamber, -1]):
+        return text
+    wet = with_unit(float(found.wetting_volume[chamber, -1]), VOLUME)
+    return f"{text}; {wet} wet it at {in_rpm(float(answer.speed[-1]))}"
+
+
+def _short_span(span: ModelSpan) -> tuple[str, str]:
+    """The model of a range of speeds, and how far it is right."""
+    beyond = ", out of range" if not span.in_range else ""
+    return f"{speeds_words(span)} rpm", f"{span.model}{beyond}, error {error_words(span)}"
 
 
 def described_blocks(answer: ExplainAnswer) -> list[Block]:

@@ -18,7 +18,7 @@ from leblanc.core.units import amplitude_sentence
 from leblanc.liquid.choice import HELD_MODELS, ModelSpan
 from leblanc.liquid.filled import FilledChamber
 from leblanc.liquid.notes import BaffleCode
-from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_table, vector_rows
+from leblanc.studies.closed_forms.answer import ClosedForms
 from leblanc.studies.held.answer import MOTIONS, Held
 from leblanc.studies.loads.answer import MachineLoads, bearing_tables, load_table
 from leblanc.studies.run import words
@@ -304,37 +304,23 @@ class RunAnswer(Answer):
 
     def blocks(self) -> tuple[Block, ...]:
         head, rows = words.comparison_table(self)
-        forms = self.closed_forms
         aside: tuple[Block, ...] = (
             Table(rows, head, shown="page"),
             Table(words.facts(self), shown="page"),
             Checks(words.checks(self)),
-            *([] if forms is None else [closed_form_table(forms)]),
         )
-        angles = None if forms is None else forms.vector
         elsewhere = (*(OF_MODELS if self.models else ()), RunCode.HELD)
         said = [note.text for note in self.notes if note.code not in elsewhere]
         pictures = tuple(self._pictures())
         return (
             Headline(words.answer(self), words.machine(self), words.largest_error(self)),
+            *([Words(said_of_liquid)] if (said_of_liquid := words.effect(self)) else []),
             Table(rows, head, right=True, shown="text"),
             Words(amplitude_sentence(words.amplitude_place(self)), shown="text"),
             *(Words(note.text, shown="text") for note in self.notes if note.code in _SAID),
             *([] if self.loads is None else [load_table(self.loads), *bearing_tables(self.loads)]),
             Columns(pictures[:2], (*aside, *pictures[2:3]), wide=True),
             *pictures[3:],
-            *(
-                []
-                if angles is None
-                else [
-                    Section(
-                        "Angles of the vector model",
-                        (Table(vector_rows(self.response.speed, angles), HEAD),),
-                        screen=True,
-                        shown="page",
-                    )
-                ]
-            ),
             Section("Time-domain states", words.held_motions(self), shown="page"),
             *words.models_section(self),
             Notes((*said, *words.remarks(self)), shown="page"),

@@ -18,6 +18,7 @@ from leblanc.core.units import (
     NOT_FOUND,
     RPM,
     VOLUME,
+    change_words,
     in_peak,
     in_rpm,
     number,
@@ -70,6 +71,29 @@ def answer(result: RunAnswer) -> str:
         first = f"The amplitude{where} {_UNBOUNDED} {at_highest}"
     bare = f"it {_UNBOUNDED}" if most.dry == _INFINITE else most.dry_text
     return f"{first} and {bare} at {at.dry} rpm without; at {speed} {at_last}."
+
+
+def effect(result: RunAnswer) -> str:
+    """Which way the liquid changes the vibration, at the last speed and on the way there, in one sentence.
+
+    Empty where there is nothing to compare.
+    """
+    curve = result.curve
+    top = curve.top
+    if result.chamberless or not result.liquid_mass > 0.0 or result.speed.size < 2 or top is None:
+        return ""
+    at = change_words(float(curve.amplitude[-1]), float(curve.amplitude_dry[-1]))
+    highest = largest(curve.amplitude_dry)
+    way = (
+        ""
+        if highest is None
+        else change_words(float(curve.amplitude[top]), float(curve.amplitude_dry[highest]))
+    )
+    if not at or not way:
+        return ""
+    doubts = _wrong(result, top)
+    aside = f" (there {', '.join(doubts)})" if doubts else ""
+    return f"With the liquid {at} at {in_rpm(float(result.speed[-1]))}, {way} on the way{aside}."
 
 
 def _where_it_holds(result: RunAnswer) -> str:

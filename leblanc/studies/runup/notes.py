@@ -97,8 +97,9 @@ def happened(
         yield note
     if (error := history.handover_estimate) > ERROR:
         text = (
-            "How liquid becomes a ring is known roughly: with twice the grip of the walls on the liquid at "
-            f"the bottom, the amplitude would differ by up to {error:.1%} of its largest."
+            "When liquid becomes a ring is known roughly: with twice the grip of the walls on the liquid at "
+            f"the bottom the amplitude at single times differs by up to {percent(error)} of its largest, as "
+            "the transition comes earlier."
         )
         yield Note(RunupCode.HANDOVER, {"error": error}, text)
     if spread is not None:
@@ -132,8 +133,8 @@ def numerical_error(error: float, cells: int | None = None) -> Note | None:
     if error <= ERROR:
         return None
     text = (
-        f"With half the cells the amplitude differs by up to {error:.1%} of its largest: "
-        "more cells would sharpen it."
+        f"With half the cells the amplitude at single times differs by up to {percent(error)} of its "
+        "largest: what happens there comes a little earlier or later."
     )
     return Note(RunupCode.ROUGH, {"error": error}, text)
 

@@ -29,6 +29,7 @@ from leblanc.core.units import (
     RPM,
     UNBALANCE,
     amplitude_sentence,
+    change_words,
     in_peak,
     in_rpm,
     number,
@@ -56,8 +57,7 @@ IN_TABLES = (
     *(RunupCode.LIQUID_MODEL, RunupCode.ROUGH, RunupCode.ENERGY),
     *(RunupCode.PEAK_STEADY, RunupCode.SELF_EXCITED),
 )
-_ROUGH = 0.1  # of an amplitude: an error beyond this is reported with its cause
-_CAUSES = {"cells": "cells and steps", "handover": "how the liquid becomes a ring"}
+_CAUSES = {"cells": "cells and steps", "handover": "pool-annulus transition"}
 _HERE = "leblanc.studies.runup.figure"
 
 
@@ -81,6 +81,7 @@ def blocks(answer: RunupAnswer) -> tuple[Block, ...]:
     rest = [note.text for note in answer.notes if note.code not in IN_TABLES]
     return (
         Headline(sentence(answer), about(answer)),
+        *([Words(told)] if (told := effect(answer)) else []),
         Section("Results", results, width="120mm"),
         Words(f"\n{amplitude_sentence(answer.plane)}", shown="text"),
         *([] if answer.chamberless else [liquid_model(answer)]),
@@ -88,6 +89,14 @@ def blocks(answer: RunupAnswer) -> tuple[Block, ...]:
         Notes(texts(answer.notes), shown="text"),
         Notes(rest, shown="page"),
     )
+
+
+def effect(answer: RunupAnswer) -> str:
+    """Which way the liquid changes the passage, in one sentence; empty where there is nothing to compare."""
+    if answer.bare or answer.chamberless:
+        return ""
+    way = change_words(answer.crest().amplitude, float(answer.peak_dry["amplitude"]))
+    return f"With the liquid {way} on the way up." if way else ""
 
 
 def about(answer: RunupAnswer) -> str:
@@ -158,17 +167,15 @@ def _fair(answer: RunupAnswer) -> str:
 
 
 def peak_known(answer: RunupAnswer) -> str:
-    """Error of the run's largest amplitude in words, with its cause where it is large; or nothing."""
+    """The one error of the run's largest amplitude in words, with its parts; or nothing."""
     parts = {name: size for name, size in answer.peak_error.items() if not math.isnan(size)}
     largest = float(answer.history.largest.max())
     if not parts or largest == 0.0:
         return ""
     error = sum(parts.values())
-    text = f"\N{PLUS-MINUS SIGN} {with_unit(error, LENGTH)}, {percent(error / largest)}"
-    if error <= _ROUGH * largest:
-        return text
-    worst = max(parts, key=lambda name: parts[name])
-    return f"{text}, most of it by {_CAUSES[worst]}"
+    text = f"\N{PLUS-MINUS SIGN} {with_unit(error, LENGTH)} ({percent(error / largest)})"
+    named = [f"{_CAUSES[name]} {percent(size / largest)}" for name, size in parts.items() if size > 0.0]
+    return f"{text}: {', '.join(named)}" if len(named) > 1 else text
 
 
 def _amplitude(answer: RunupAnswer, moment: Moment) -> str:

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import subprocess
 import sys
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import typer
 
+import leblanc as lb
 from leblanc import cli
 from leblanc.cli import exit_code, main
 from leblanc.core.answer import NotConverged
 from leblanc.scene.scene import load_scene
 from leblanc.scene.schema.load import SceneError, SceneFault
 from meshes.errors import InputError
+from tests.mutants import kills
 
 Capture = pytest.CaptureFixture[str]
 ROOT = Path(cli.__file__).parents[2]
@@ -28,6 +33,40 @@ def leblanc(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]
     code = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from leblanc.cli import main; sys.exit(main())"
     command = [sys.executable, "-c", code, *arguments]
     return subprocess.run(command, text=True, stderr=subprocess.PIPE, check=False, **options)
+
+
+# -- values in place of those of the file --------------------------------------------------------------------
+
+
+@kills("leblanc.cli.command:_command_line", 'for part in ("--set", change)', "for part in ()")
+def test_other_values_of_a_machine(tmp_path: Path, capsys: Capture) -> None:
+    """As the file with these values answers; the command that makes it again says them."""
+    changes = ("rotor.unbalance=0.12 kg mm", "chambers.0.volume='0.8 l'", "speeds.count=20")
+    typed = [part for change in changes for part in ("--set", change)]
+    assert main(["run", str(ROOT / "examples/runup.toml"), *typed, "--json", "--out", str(tmp_path)]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    values = {"rotor.unbalance": 1.2e-4, "chambers.0.volume": 8e-4, "speeds.count": 20}
+    answer = lb.run(lb.example("runup").replace(values))
+    np.testing.assert_allclose(printed["amplitude"], answer.response.amplitude, rtol=1e-12)
+    assert "--set &#39;rotor.unbalance=0.12 kg mm&#39;" in (tmp_path / "summary.html").read_text("utf-8")
+    assert lb.open(tmp_path / "response.nc").speed.size == 20
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("rotor.unbalanc=3", "--set: rotor.unbalanc = 3: must be the path of a field; .*mean unbalance"),
+        ("speeds.count=1.5", "--set: speeds.count = 1.5: must be a whole number"),
+        ("chambers.0.volume=1,5 l", '--set: chambers.0.volume = "1,5 l": .*point, as in "1.5 l"'),
+        ("chambers.7.volume=1 l", "--set: chambers.7.volume = "),
+        ("rotor", "--set = 'rotor': must be PATH=VALUE"),
+        ("=3", "--set = '=3': must be PATH=VALUE"),
+    ],
+)
+def test_other_values_that_are_refused(change: str, said: str, capsys: Capture) -> None:
+    assert main(["explain", str(ROOT / "examples/runup.toml"), "--set", change]) == 2
+    lines = capsys.readouterr().err.strip().split("\n")
+    assert len(lines) == 1 and re.search(said, lines[0])
 
 
 # -- the command line itself ---------------------------------------------------------------------------------

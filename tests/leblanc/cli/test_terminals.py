@@ -93,7 +93,8 @@ def write_inputs(folder: Path) -> None:
     for scene, name in (("horizontal_rig", SCENE), ("runup", "hochlauf.toml"), ("vibratory_table", "")):
         text = (ROOT / "examples" / f"{scene}.toml").read_text(encoding="utf-8")
         lines = [
-            f'name = "{NAME}"' if line.startswith("name =") and name else line for line in text.splitlines()
+            f'name = "{NAME}{" 2" * (scene == "runup")}"' if line.startswith("name =") and name else line
+            for line in text.splitlines()
         ]
         lines = ["count = 5" if line.startswith("count =") else line for line in lines]
         (folder / (name or f"{scene}.toml")).write_text("\n".join(lines), encoding="utf-8")

@@ -147,6 +147,8 @@ OTHER_WAY = {
     "rotor.damping": "rotor.damping_ratio",
     "rotor.balls.pendulum_inertia": "rotor.balls.kind",
     "optimise.balls.diameter": "optimise.balls.mass",
+    "runup.ramp_time": "runup.rate",
+    "chambers.*.baffles.height": "chambers.*.baffles.tip_radius",
 }
 LAWS = {"density": DensityLaw, "viscosity": ViscosityLaw}
 # Checked in a test of their own.

@@ -74,7 +74,10 @@ def test_the_keys_of_baffles_reach_the_chamber() -> None:
     [
         ({"count": 0}, "chambers.0.baffles.count = 0: must be a whole number from 1 to 360"),
         ({"tip_radius": 0.05}, "chambers.0.baffles.count: must be given: a whole number from 1 to 360"),
-        ({"count": 3, "depth": 1}, "left out or spelled as one of: count, tip_radius, wall_gap, first_angle"),
+        (
+            {"count": 3, "depth": 1},
+            "left out or spelled as one of: count, tip_radius, height, wall_gap, first_angle",
+        ),
         ({"count": 3, "tip_radius": 0.1}, "must be a tip_radius below radius - wall_gap, 0.1 m"),
         ({"count": 3, "tip_radius": "9 kg"}, "chambers.0.baffles.tip_radius = '9 kg': must be a length"),
     ],

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from leblanc.core import units
 from leblanc.core.units import Dimension, parse, parse_option
 from meshes.errors import InputError
+from tests.mutants import kills
 
 TURN = 2.0 * math.pi
 INCH, POUND = 0.0254, 0.45359237  # m and kg, exact by definition
@@ -156,8 +157,18 @@ def test_a_wrong_unit_is_named() -> None:
         parse("1000 rmp", units.ANGULAR_SPEED)
     with pytest.raises(InputError, match="there is no unit Kg, but kg"):
         parse("4 Kg", units.MASS)
-    with pytest.raises(InputError, match="the decimal sign is a point"):
-        parse("4,5 kg", units.MASS)
+    for text, said in (
+        ("4,5 kg", 'the decimal sign is a point, as in "4.5 kg"'),
+        ("1,200 kg", 'as in "1.200 kg", and thousands have no sign: "1200 kg"'),
+        ("4,5 l", "the decimal sign is a point$"),
+    ):
+        with pytest.raises(InputError, match=said):
+            parse(text, units.MASS)
+    for text in ("84 N.s/m", "84 N-s/m"):
+        with pytest.raises(InputError, match=r'it may be written "84 N\*s/m"'):
+            parse(text, units.DAMPING)
+    with pytest.raises(InputError, match=r"N\*s/m measures something else"):
+        parse("84 Ns/m", units.STIFFNESS)  # no plural of newton
     with pytest.raises(InputError, match="1/min may mean turns or radians"):
         parse("1000 1/min", units.ANGULAR_SPEED)
     with pytest.raises(InputError, match="N/m measures something else"):
@@ -243,10 +254,29 @@ def test_common_temperatures_are_those_of_the_library(unit: str, number: float) 
         ("9.8 m/s**2", units.ACCELERATION, 9.8),
         ("3 cm ³", units.VOLUME, 3e-6),
         ("600 g·mm", units.UNBALANCE, 6e-4),
+        ("998 kg/m3", units.DENSITY, 998.0),
+        ("1.5e-6 m2/s", units.VISCOSITY, 1.5e-6),
+        ("1e3 mm", units.LENGTH, 1.0),
+        ("10 cm3", units.VOLUME, 1e-5),
+        ("84 Ns/m", units.DAMPING, 84.0),
+        ("20 Nmm", units.TORQUE, 0.02),
+        ("3 kgm2", units.INERTIA, 3.0),
+        ("120 gmm", units.UNBALANCE, 1.2e-4),
+        ("3.5 mPas", units.DYNAMIC_VISCOSITY, 3.5e-3),
+        ("5 Nms/rad", units.ANGULAR_DAMPING, 5.0),
+        ("400 g × 230 mm", units.UNBALANCE, 0.092),  # noqa: RUF001
     ],
 )
 def test_common_units_in_any_spelling(text: str, dimension: Dimension, value: float) -> None:
     assert parse(text, dimension) == value
+
+
+@kills("leblanc.core.units:_parted", 'endswith("/")', 'endswith("*")')
+@kills("leblanc.core.units:_matched", "float(two[1]) * float(two[3])", "float(two[1])")
+def test_products_as_they_are_typed() -> None:
+    """Factors behind a stroke are below it; two quantities with a sign between them are multiplied."""
+    assert parse("1e-8 mm3/Nm", units.WEAR) == parse("1e-8 mm^3/(N*m)", units.WEAR)
+    assert parse("400 g * 230 mm", units.UNBALANCE) == parse("0.092 kg m", units.UNBALANCE)
 
 
 def test_usual_scenes_need_no_unit_library() -> None:

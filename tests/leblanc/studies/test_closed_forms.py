@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from leblanc.core.blocks import Table
 from leblanc.liquid.choose import prepare
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.closed_forms import study
-from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_table, vector_rows
+from leblanc.studies.closed_forms.answer import ClosedForms, closed_form_table
 from leblanc.studies.closed_forms.study import vector_model
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
@@ -248,11 +247,3 @@ def test_what_an_upright_scene_lacks_is_said(scene: object, word: str) -> None:
     found = closed_forms(scene())  # type: ignore[operator]
     assert found.upright is None
     assert any(word in text for text in found.lacking)
-
-
-def test_table_of_angles() -> None:
-    result = lb.run(lb.example("horizontal_rig"))
-    rows = vector_rows(result.speed, result.vector_model)
-    assert len(rows) == 9 and {len(row) for row in rows} == {len(HEAD)}
-    assert rows[0][1] == rows[0][2] and rows[-1][1] == rows[-1][2]
-    assert "nan" not in json.dumps(rows)

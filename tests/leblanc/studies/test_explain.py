@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import leblanc as lb
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.numbers import layer_numbers
@@ -16,6 +17,8 @@ from fluid.pool import centrifuging_speed
 from leblanc.cli import main
 from leblanc.core.units import in_rpm
 from leblanc.liquid.choose import carried_from, choose
+from leblanc.registry import CORE
+from leblanc.scene.examples import example, example_names, example_path
 from leblanc.scene.scene import Scene, load_scene, scene_from_table
 from leblanc.studies.explain.answer import layer_rows
 from leblanc.studies.explain.study import explain_scene
@@ -144,7 +147,7 @@ def test_explanation() -> None:
 
 
 def test_words_and_json(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    assert main(["explain", "examples/vertical_rig.toml"]) == 0
+    assert main(["explain", "examples/vertical_rig.toml", "--full"]) == 0
     words = capsys.readouterr().out
     assert "chamber 3" in words and "statics" in words and "kappa" in words
     assert main(["explain", "examples/horizontal_rig.toml", "--json"]) == 0
@@ -185,3 +188,20 @@ def test_an_answer_says_in_python_what_the_command_prints(capsys: pytest.Capture
     assert main(["explain", scene, "--json"]) == 0
     answer = explain_scene(load_scene(scene)).to_json()
     assert json.dumps(answer, allow_nan=False) + "\n" == capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", [name for name in example_names() if not name.startswith("studies/")])
+def test_twelve_lines_say_the_main_numbers(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of every machine with liquid; none is longer than 100 columns."""
+    scene = example(name)
+    if scene.balls or scene.kind not in CORE:
+        return
+    assert main(["explain", str(example_path(name))]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) <= 12 and max(map(len, lines)) <= 100
+    printed = "\n".join(lines)
+    answer = lb.explain(scene)
+    assert in_rpm(answer.critical_speed_dry) in printed and "explain --full" in lines[-1]
+    assert all(span.model in printed for span in answer.models[:4])
+    assert main(["explain", str(example_path(name)), "--full"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) > len(lines)

@@ -17,6 +17,7 @@ from leblanc.scene.scene import Scene
 from leblanc.studies.runup.notes import RunupCode, numerical_error
 from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.runup.words import known, peak_known, sentence
+from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from solvers.pypde.coupled import RotorLayersPDE
@@ -31,11 +32,19 @@ def machine(*steps: str) -> Scene:
 
 
 @cache
-def peaks(cells: int) -> list[float]:
-    """Largest amplitude of each step of the way past the capture, m."""
-    found = runup_scene(machine("to 400 rpm at 40 rpm/s", "hold 1 s"), cells=cells, check=False)
-    assert found.converged
-    return [passage.amplitude for passage in found.passages]
+def peaks(cells: int) -> Array:
+    """Largest amplitude of each step of the way past the capture, m.
+
+    The middle of three runs whose unbalance differs in its tenth digit: by rounding alone the passage after
+    the capture differs by up to a tenth.
+    """
+    way, runs = machine("to 400 rpm at 40 rpm/s", "hold 1 s"), []
+    for k in range(3):
+        own = way.replace({"rotor.loads.0.size": 0.092 * (1.0 + 1e-10 * k)})
+        found = runup_scene(own, cells=cells, check=False)
+        assert found.converged
+        runs.append([passage.amplitude for passage in found.passages])
+    return np.median(runs, axis=0)
 
 
 @pytest.mark.slow
@@ -53,7 +62,7 @@ def test_peak_error_covers_more_cells() -> None:
     """
     found = runup_scene(machine("to 400 rpm at 40 rpm/s", "hold 1 s"), cells=64)
     error = found.peak_error["cells"]
-    assert abs(max(peaks(64)) - max(peaks(256))) < error < 0.1 * max(peaks(64))
+    assert abs(peaks(64).max() - peaks(256).max()) < error < 0.1 * peaks(64).max()
 
 
 @pytest.mark.slow
@@ -83,8 +92,8 @@ def test_motions_held_with_many_baffles() -> None:
     assert RotorLayersPDE(rotor.system(), [fill], 40.0, friction=Friction(), gravity=9.81).layers.all()
 
 
-@kills("leblanc.studies.runup.words:peak_known", "error <= _ROUGH", "error > _ROUGH")
-@kills("leblanc.studies.runup.words:peak_known", "max(parts", "min(parts")
+@kills("leblanc.studies.runup.words:peak_known", "len(named) > 1", "len(named) > 2")
+@kills("leblanc.studies.runup.words:peak_known", "percent(size / largest)", "percent(error / largest)")
 def test_what_a_reader_is_told() -> None:
     """The headline has the peak's error, its cause where it is large, and for how long the model holds."""
     short = lb.example("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
@@ -93,10 +102,10 @@ def test_what_a_reader_is_told() -> None:
     assert peak_known(found) == "" and "for all of the run" in sentence(found)
     largest = float(found.history.largest.max())
     for gaps, told in (
-        ((0.01, math.nan), "1 %"),
-        ((0.04, 0.05), "9 %"),
-        ((0.15, 0.05), "20 %, most of it by cells and steps"),
-        ((0.05, 0.15), "20 %, most of it by how the liquid becomes a ring"),
+        ((0.01, math.nan), "(1 %)"),
+        ((0.04, 0.0), "(4 %)"),
+        ((0.15, 0.05), "(20 %): cells and steps 15 %, pool-annulus transition 5 %"),
+        ((0.05, 0.15), "(20 %): cells and steps 5 %, pool-annulus transition 15 %"),
     ):
         history = replace(found.history, peak_gaps=(gaps[0] * largest, gaps[1] * largest))
         one = replace(found, history=history)

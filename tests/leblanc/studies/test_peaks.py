@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.core.units import RPM
+from leblanc.core.units import MINUS, RPM, change_words
 from leblanc.liquid.choose import choose_all, liquid_models, prepare
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
@@ -24,7 +24,7 @@ from leblanc.studies.peaks import _distinct, responses_between
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.run.words import alts, answer, remarks
+from leblanc.studies.run.words import alts, answer, comparisons, effect, remarks
 from leblanc.studies.sweep.batch import answer_scenes
 from meshes.arrays import Array
 from solvers.synchronous.response import Response, by_speed, response
@@ -393,3 +393,18 @@ def test_resonances_that_are_one() -> None:
     apart = once * (1.0 + 1e-11)
     assert _distinct(once, apart).size == 6 and _distinct(once[:0], apart).size == 3
     assert _distinct(apart, once[:0]).size == 3
+
+
+@kills("leblanc.core.units:change_words", "size / without - 1.0", "without / size - 1.0")
+@kills("leblanc.studies.run.words:effect", "curve.amplitude_dry[highest]", "curve.amplitude_dry[top]")
+def test_the_direction_of_what_the_liquid_does() -> None:
+    """In per cent at the last speed and between the two largest amplitudes, as the table has them."""
+    found = lb.run(lb.example("runup"))
+    most, _, last, *_ = comparisons(found)
+    said = effect(found)
+    for row in (most, last):
+        share = 100.0 * (float(row.ratio) - 1.0)
+        assert f"{MINUS}{abs(share):.{1 if abs(share) < 10.0 else 0}f} %" in said
+    assert change_words(1.51, 1.0) == "+51 %" and change_words(1.0, 1.0) == "no change"
+    assert change_words(1.0, 0.0) == change_words(math.inf, 1.0) == change_words(1.0, math.nan) == ""
+    assert effect(lb.run(lb.example("runup").replace({"chambers.0.volume": 0.0}))) == ""
