@@ -89,7 +89,8 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
             machine, where = loaded(source, changes) if changes else loaded(source), str(source)
             if files and whole:
                 state = getattr(machine, "scene", machine).digest
-                folder = results_dir(machine.name, out, source, state, *files, force=force)
+                part = " ".join(given[name] for name, one in own.items() if one.option.apart)
+                folder = results_dir(machine.name, out, source, state, *files, force=force, part=part)
         if out is not None and not whole:
             folder = out_dir(question.__name__, out)
         values = {name: _value(own[name], given[name]) for name in own}

@@ -128,11 +128,12 @@ def recording(command: str) -> Iterator[Record]:
 
 
 def results_dir(
-    name: str, out: Path | None, source: Path, state: str, *files: str, force: bool = False
+    name: str, out: Path | None, source: Path, state: str, *files: str, force: bool = False, part: str = ""
 ) -> Path:
     """Folder for what a command makes of a scene, as `leblanc.core.files.out_dir`.
 
-    `state` is the scene's fingerprint. An `InputError` where neither `out` nor `force` is given and the
+    `state` is the scene's fingerprint, `part` one of several things that the command writes beside each
+    other. An `InputError` where neither `out` nor `force` is given and the
     folder holds what another scene of the same name gave, whose file is still there.
     """
     folder = chosen_dir(name, out)
@@ -144,6 +145,7 @@ def results_dir(
     out_dir(name, out, *files)
     record = _RECORD.get()
     if record is not None:
+        record.command = f"{record.command} {part}".rstrip()
         record.open(folder, source, state, fresh)
     return folder
 

@@ -59,6 +59,7 @@ class Option:
     argument: bool = False  #: by its place, without a name
     alone: bool = False  #: no option of a command: Python alone has it
     same: bool = False  #: the answer does not depend on it
+    apart: bool = False  #: files of one value stand beside those of another
     film: int = 0  #: no option: so many where the command is asked for a film by --animate
 
 

@@ -112,6 +112,20 @@ def test_what_is_not_written_again_is_removed(folder: Path) -> None:
     assert {path.name for path in folder.iterdir()} == {"run.txt", "mine.png", "notes.txt", NAME}
 
 
+def test_parts_of_a_command_stand_beside_each_other(folder: Path) -> None:
+    def writes(part: str, names: tuple[str, ...]) -> None:
+        with recording("export") as record:
+            inside = results_dir("Rig", None, Path("a.toml"), "1", part=part)
+            for name in names:
+                write(inside / name, name)
+            record.close()
+
+    writes("csv", ("a.csv", "b.csv"))
+    writes("xlsx", ("a.xlsx",))
+    writes("csv", ("a.csv",))
+    assert {path.name for path in folder.iterdir()} == {"a.csv", "a.xlsx", NAME}
+
+
 def test_files_of_another_command_are_marked(folder: Path) -> None:
     does("runup", "a.toml", "1", {"runup.nc": "1"})
     assert does("run", "a.toml", "1", {"run.txt": "1"}) == []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated
 
-from leblanc.core.question import SCENE, Quantity, ask
+from leblanc.core.question import SCENE, Option, Quantity, ask
 from leblanc.core.units import ANGULAR_SPEED
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ def export(
     *,
     to: Annotated[
         str,
+        Option(apart=True),
         "csv or xlsx: tables; fmu: the run-up for co-simulation; statespace: linear matrices, MAT and JSON.",
     ],
     speed: Annotated[
