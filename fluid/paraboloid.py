@@ -26,13 +26,11 @@ def steepness(speed: ArrayLike, gravity: ArrayLike, radius: ArrayLike, height: A
     B = beta R^2/h with beta = Omega^2/(2 g), from 0 (flat; also without speed and gravity) to
     `CYLINDER_STEEPNESS`.
     """
-    spin, g, wall, h = np.broadcast_arrays(
-        *(np.asarray(x, dtype=float) for x in (speed, gravity, radius, height))
-    )
+    spin, g, wall, h = (np.asarray(x, dtype=float) for x in (speed, gravity, radius, height))
     rise = np.square(spin * wall)
     fall = 2.0 * g * h
     capped = rise >= CYLINDER_STEEPNESS * fall
-    ratio = np.divide(rise, fall, out=np.full(rise.shape, CYLINDER_STEEPNESS), where=~capped)
+    ratio = np.divide(rise, fall, out=np.full(capped.shape, CYLINDER_STEEPNESS), where=~capped)
     return np.where(rise == 0.0, 0.0, ratio)
 
 

@@ -65,17 +65,25 @@ def plate_rate(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> Compl
 
     Of two circles, made unlike by the Coriolis force: (1 - T)/2 of the energy goes round as e^{i s t}.
     """
-    return plate_terms(layer_tanh, spin, slip)[0]
+    return _plates(layer_tanh, spin, slip)[0]
 
 
 def plate_terms(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> tuple[Complex, Complex]:
     """`plate_rate` and its derivative with respect to the slip."""
+    rate, *circles = _plates(layer_tanh, spin, slip)
+    # At the end of a cut the root is 0 and its slope without end, for which that next to it serves.
+    steep = (share / np.where(x == 0.0, 1e-150, x) for share, x in circles)
+    return rate, np.asarray(0.5j * sum(steep))
+
+
+def _plates(
+    layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike
+) -> tuple[Complex, tuple[Array, Complex], tuple[Array, Complex]]:
+    """`plate_rate`, and of each circle its share and its root."""
     s, t, twice = np.asarray(slip, dtype=complex), np.asarray(layer_tanh), 2.0 * np.asarray(spin)
     along, against = np.sqrt(1j * (s + twice)), np.sqrt(1j * (s - twice))
     first, second = 0.5 * (1.0 - t), 0.5 * (1.0 + t)
-    # At the end of a cut the root is 0 and its slope without end, for which that next to it serves.
-    steep = (share / np.where(x == 0.0, 1e-150, x) for share, x in ((first, along), (second, against)))
-    return np.asarray(first * along + second * against), np.asarray(0.5j * sum(steep))
+    return np.asarray(first * along + second * against), (first, along), (second, against)
 
 
 def layer_rate(layer: Layer, spin: ArrayLike, slip: ArrayLike) -> Complex:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import json
+import lzma
 import os
 import re
 import subprocess
 import sys
 import zipfile
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.net.cases import missing
 from validation.run_notebooks import texts
 
 ROOT = Path(__file__).parent.parent
@@ -90,22 +92,40 @@ def test_its_commands_run_away_from_the_sources(run: Run) -> None:
 
 
 def steps() -> list[str]:
-    """Commands of the README in their order, without its two of make; the block of Python as one of them."""
+    """Commands of the README in their order; the block of Python as one of them."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     found = []
     for block in _BLOCK.finditer(text):
         body = block["body"].replace("\\\n", " ")
         if block["kind"] == "python":
             found.append(f"python - <<'END'\n{body}END")
-        else:
-            found += [line.strip() for line in body.splitlines() if not line.startswith("make ")]
+        elif not block["kind"]:
+            found += [line.strip() for line in body.splitlines()]
     return found
 
 
-def test_the_readme_has_steps_for_each_command() -> None:
-    named = {line.split()[1] for line in steps() if line.startswith("leblanc ")}
-    assert named >= {"new", "run", "explain", "volume", "layer", "map", "runup", "optimise", "sweep", "view"}
-    assert named >= {"modes", "trade", "validate", "notebooks"}
+def test_the_readme_is_short_and_names_each_command() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 90 and max(map(len, text.splitlines())) <= 130
+    named = set(re.findall(r"leblanc ([\w-]+)", text))
+    alone = {"compare", "map", "runup", "optimise", "sweep", "fit", "layer", "modes", "volume", "view"}
+    assert named >= {"new", "run", "explain", "validate", *alone}
+
+
+def test_the_tally_of_the_readme_is_that_of_validate() -> None:
+    """As the kept answers of its groups have it."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    verdicts: Counter[str] = Counter()
+    for path in (ROOT / "tests/net/kept").glob("validate-*.json.xz"):
+        kept = json.loads(lzma.decompress(path.read_bytes()))
+        verdicts.update(case["verdict"] for case in kept["stdout"]["cases"])
+    said = re.search(
+        r"lays (\d+) claims.* (\d+) agree, (\d+) .* (\d+) are trends, (\d+) differ", text, re.DOTALL
+    )
+    assert said is not None
+    each = [verdicts[name] for name in ("agrees", "erratum", "trend", "differs")]
+    assert [int(number) for number in said.groups()] == [verdicts.total(), *each]
+    assert f"{verdicts.total()} published numbers and statements, of which {each[-1]} differ" in text
 
 
 @pytest.mark.slow
@@ -115,7 +135,9 @@ def test_steps_of_the_readme(run: Run) -> None:
     for name in ("jupytext", "nbclient", "nbconvert", "ipykernel"):
         pytest.importorskip(name)
     for line in steps():
-        if line.startswith("pip install") or (line.startswith("leblanc view") and missing("screen")):
+        if line.startswith("pip install"):
             continue
+        if example := re.search(r"examples/(\w+)\.toml", line):
+            run(f"mkdir examples; leblanc new --example {example[1]} {example[0]}")
         done = run(line)
         assert done.returncode == 0, f"{line}\n{done.stderr}"

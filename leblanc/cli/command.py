@@ -206,7 +206,7 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any], c
         value = given[one.name]
         option = _option(one, value)
         if one.read is SCENE or one.option.argument:
-            parts += [] if value is None else [path_text(value)]
+            parts += [] if value is None else [str(value)]
         elif one.option.same or value == one.default:
             continue
         elif isinstance(value, bool):
@@ -215,7 +215,7 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any], c
             for each in value if isinstance(value, list | tuple) else (value,):
                 parts += [option, str(each)]
     parts += [part for change in changes for part in ("--set", change)]
-    return " ".join(map(shlex.quote, parts))
+    return " ".join(map(shlex.quote, map(path_text, parts)))
 
 
 def _closing(answer: Answer, folder: Path, drawn: Sequence[Any]) -> str:

@@ -27,8 +27,13 @@ _Kernel = Callable[..., None]
 
 def _sizes(chamber: AnyChamber, count: int) -> tuple[Array, ...]:
     """Radius, inner radius and height for each of some states, shape (n,)."""
-    sizes = chamber.radius, chamber.inner_radius, chamber.height
-    return tuple(np.ascontiguousarray(np.broadcast_to(np.asarray(x, dtype=float), count)) for x in sizes)
+    return tuple(_row(x, count) for x in (chamber.radius, chamber.inner_radius, chamber.height))
+
+
+def _row(value: ArrayLike, count: int) -> Array:
+    """One for each of some states, shape (n,)."""
+    one = np.asarray(value, dtype=float)
+    return np.ascontiguousarray(one if one.shape == (count,) else np.broadcast_to(one, count))
 
 
 def _integrals(
@@ -100,7 +105,10 @@ def plan_moments(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) -> tu
 
 def same_shape(*values: ArrayLike) -> tuple[Array, ...]:
     """Copies of some values, broadcast to one shape."""
-    return tuple(np.array(x) for x in np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in values)))
+    own = [np.array(value, dtype=float) for value in values]
+    if all(x.shape == own[0].shape for x in own):
+        return tuple(own)
+    return tuple(np.array(x) for x in np.broadcast_arrays(*own))
 
 
 @dataclass(frozen=True)
@@ -291,7 +299,7 @@ def _solve(
     from solvers.statics import kernel
 
     shape, count = volume.shape, volume.size
-    capacity = np.ascontiguousarray(np.broadcast_to(np.asarray(chamber.capacity, dtype=float), count))
+    capacity = _row(chamber.capacity, count)
     zeta, reached, converged = np.empty(count), np.empty(count), np.empty(count, dtype=bool)
     states = volume.ravel(), e.ravel(), steep.ravel()
     kernel.wetted_heights(*_sizes(chamber, count), capacity, *states, zeta, reached, converged)

@@ -98,8 +98,9 @@ def _moved_moment(surfaces: Surfaces, eps: Array) -> Array:
     )
     floor = surfaces.floor.copy()
     best = np.full(eps.shape, np.inf)
+    walls = _Walls.of(surfaces, eps)
     for step in range(_STEPS + 1):
-        volume, moment = _air(surfaces, floor, eps)
+        volume, moment = walls.air(floor)
         missing = target - volume
         # No air lies farther out along the deflection than the chamber does.
         best = np.minimum(best, moment + np.abs(missing) * (1.0 + eps) + slack)
@@ -109,43 +110,59 @@ def _moved_moment(surfaces: Surfaces, eps: Array) -> Array:
     return np.asarray(np.maximum(best, 0.0))
 
 
-def _air(surfaces: Surfaces, floor: Array, eps: Array) -> tuple[Array, Array]:
-    """Volume of the air over R^2 h, and the moment that it takes from the full chamber, over R^3 h."""
-    rows = np.flatnonzero(surfaces.inner > 0.0)
-    count, wall = eps.size, np.sqrt(surfaces.inner[rows])
-    # Inside the outer walls, then inside the inner ones.
-    both = np.concatenate([np.arange(count), rows])
-    walls = np.concatenate([np.ones(count), wall])
-    volume, moment = _under(surfaces.at(both), floor[both], eps[both], walls)
-    volume[rows] -= volume[count:]
-    moment[rows] += np.pi * np.square(wall) * eps[rows] - moment[count:]
-    return volume[:count], moment[:count]
+@dataclass(frozen=True)
+class _Walls:
+    """Outer walls of n chambers, then the inner ones of those that have one, shape (m,)."""
 
+    count: int  #: n
+    rows: Index  #: the chambers with an inner wall
+    both: Index  #: the chamber of each wall
+    wall: Array  #: radius
+    eps: Array  #: as of the chambers
+    steep: Array
 
-def _under(surfaces: Surfaces, floor: Array, eps: Array, wall: Array) -> tuple[Array, Array]:
-    """Volume and first moment of the air inside a cylinder of radius `wall` [theory: statics, eq. 7]."""
-    ring = 1.0 / surfaces.steep
-    flat = surfaces.steep > _CYLINDER
-    high = np.maximum(floor + np.where(flat, 0.5 * ring, ring), 0.0)
-    top = lens_moments(np.sqrt(high) / wall, 1.0, eps / wall)
-    area, x = np.square(wall) * top.area, wall**3 * top.x
-    volume, moment = area.copy(), x.copy()
-    rows = np.flatnonzero(~flat)
-    if rows.size:
+    @classmethod
+    def of(cls, surfaces: Surfaces, eps: Array) -> _Walls:
+        """Walls of some chambers."""
+        rows = np.flatnonzero(surfaces.inner > 0.0)
+        both = np.concatenate([np.arange(eps.size), rows])
+        wall = np.concatenate([np.ones(eps.size), np.sqrt(surfaces.inner[rows])])
+        return cls(eps.size, rows, both, wall, eps[both], surfaces.steep[both])
+
+    def air(self, floor: Array) -> tuple[Array, Array]:
+        """Volume of the air over R^2 h, and the moment that it takes from the full chamber, over R^3 h."""
+        rows, count = self.rows, self.count
+        volume, moment = self._under(floor[self.both])
+        volume[rows] -= volume[count:]
+        moment[rows] += np.pi * np.square(self.wall[count:]) * self.eps[count:] - moment[count:]
+        return volume[:count], moment[:count]
+
+    def _under(self, floor: Array) -> tuple[Array, Array]:
+        """Volume and first moment of the air inside the cylinders of the walls [theory: statics, eq. 7]."""
+        wall, eps, ring = self.wall, self.eps, 1.0 / self.steep
+        flat = self.steep > _CYLINDER
+        rows = np.flatnonzero(~flat)
         q, low = wall[rows], np.maximum(floor[rows], 0.0)
-        bottom = lens_moments(np.sqrt(low) / q, 1.0, eps[rows] / q)
-        b, s = surfaces.steep[rows], high[rows]
-        polar = q**4 * (top.polar[rows] - bottom.polar)
-        x_polar = q**5 * (top.x_polar[rows] - bottom.x_polar)
-        volume[rows] = b * (s * area[rows] - low * q**2 * bottom.area - polar)
-        moment[rows] = b * (s * x[rows] - low * q**3 * bottom.x - x_polar)
-    return volume, moment
+        high = np.maximum(floor + np.where(flat, 0.5 * ring, ring), 0.0)
+        # Of the discs at the top, then of those on the floor.
+        disc = np.concatenate([np.sqrt(high) / wall, np.sqrt(low) / q])
+        lens = lens_moments(disc, 1.0, np.concatenate([eps / wall, eps[rows] / q]))
+        area, x, polar, x_polar = (
+            np.split(part, [wall.size]) for part in (lens.area, lens.x, lens.polar, lens.x_polar)
+        )
+        volume, moment = np.square(wall) * area[0], wall**3 * x[0]
+        b, s = self.steep[rows], high[rows]
+        risen = q**4 * (polar[0][rows] - polar[1]), q**5 * (x_polar[0][rows] - x_polar[1])
+        volume[rows] = b * (s * volume[rows] - low * q**2 * area[1] - risen[0])
+        moment[rows] = b * (s * moment[rows] - low * q**3 * x[1] - risen[1])
+        return volume, moment
 
 
 def _plan(surfaces: Surfaces, floor: Array, eps: Array) -> Array:
     """About B times the area of the surface's plan: how the air grows with the floor's squared radius."""
     low, high = np.maximum(floor, 0.0), np.maximum(floor + 1.0 / surfaces.steep, 0.0)
-    angles = [_inside(s, 1.0, eps) - _inside(s, surfaces.inner, eps) for s in (low, 0.5 * (low + high), high)]
+    squared = np.stack([low, 0.5 * (low + high), high])
+    angles = _inside(squared, 1.0, eps) - _inside(squared, surfaces.inner, eps)
     share = np.minimum(surfaces.steep * (high - low), 1.0)
     return np.asarray(share * (angles[0] + 4.0 * angles[1] + angles[2]) / 6.0)
 

@@ -112,6 +112,19 @@ class Balance:
                     flag[rows, j] = found
         return Liquid(unbalance, slope, *flags)
 
+    def pull(self, which: Index, deflection: Array) -> Array:
+        """First moment of the liquid of all chambers at one forward deflection of all, kg m, shape (k,)."""
+        total = np.zeros(deflection.shape)
+        for j, fills in enumerate(self.fills):
+            line = self.added_mass[which, j] * deflection
+            rows = np.flatnonzero(~(deflection <= self.limit[which, j]))
+            if rows.size:
+                own, gravity = which[rows], np.full(rows.size, self.gravity)
+                whirls = Whirls.synchronous(self.speed[own], deflection[rows], gravity)
+                line[rows] = self.model.pull(fills.at(own), whirls)
+            total += line
+        return total
+
     def told(self, which: Index, answer: Complex) -> Liquid:
         """Law of each chamber at solutions, the flags asked of the model even if its law is straight there.
 

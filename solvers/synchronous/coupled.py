@@ -90,9 +90,7 @@ def one_plane(balance: Balance) -> Solutions:
 
     def pull(deflection: Array, k: Index) -> Array:
         """Liquid's pull beyond its mass at the chamber's centre; never decreases with the deflection."""
-        moment = balance.liquid(k, np.repeat(deflection[:, None], len(balance.fills), 1)).unbalance.sum(
-            axis=1
-        )
+        moment = balance.pull(k, deflection)
         return np.asarray(squared[k] * np.maximum(moment - mass[k] * deflection, 0.0))
 
     elastic = support.real - squared * mass

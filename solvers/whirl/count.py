@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -23,6 +22,7 @@ _FAR = 1e5  # over the highest frequency: where the phase is that at infinity
 _WHOLE = 0.2  # distance of a count from a whole number
 _LIP, _END = 1e-9, 1e-8  # over the spin: how far the path stays off a cut and its end
 _ALIKE = 0.01  # of the distance of a rough mode from the line: two of them so near to one another are one
+_BLOCK = 512  # points whose arrays fit the processor's cache
 _FIRST = np.array([1e-2, 1.0])  # over a frequency, of the first points below and above it
 
 # Takes points, shape (k,), and which of the n problems each belongs to, (k,); returns log f, (k,).
@@ -61,9 +61,9 @@ def missed_modes(
         beside, own = np.take_along_axis(beside, order, axis=1), np.take_along_axis(own, order, axis=1)
         # Those of two that are alike serve both.
         beside[:, 1:][np.diff(beside, axis=1) < _ALIKE * own[:, 1:]] = np.nan
-        pairs = _packed(np.hstack([pairs, rough]))
+        pairs = packed(np.hstack([pairs, rough]))
     path, owner = _path(pairs, region, beside)
-    rise, sure = _phase(_Deflated(function, pairs, alone), path, owner, region.scale)
+    rise, sure = _phase(_Deflated(function, pairs, alone, region.scale), path, owner, region.scale)
     held = 2 * np.isfinite(pairs).sum(axis=1) + np.isfinite(alone).sum(axis=1)
     count = 0.5 * (degree - held) - rise / np.pi
     whole = np.round(count)
@@ -80,14 +80,14 @@ def _upper(known: Complex, scale: Array) -> tuple[Complex, Complex]:
     gap = np.abs(mirrored[:, :, None] - upper[:, None, :])
     twin = (gap <= 1e-6 * (np.abs(mirrored)[:, :, None] + scale[:, None, None])).any(axis=2)
     lower = np.where(twin, nothing, mirrored)
-    return _packed(np.hstack([upper, lower])), _packed(np.where(real, known.real + 0j, nothing))
+    return packed(np.hstack([upper, lower])), packed(np.where(real, known.real + 0j, nothing))
 
 
-def _packed(values: Complex) -> Complex:
+def packed(values: Complex) -> Complex:
     """Rows with their finite entries first, without the columns that no row needs."""
     finite = np.isfinite(values)
     order = np.argsort(~finite, axis=1, kind="stable")
-    return np.take_along_axis(values, order, axis=1)[:, : finite.sum(axis=1).max()]
+    return np.take_along_axis(values, order, axis=1)[:, : finite.sum(axis=1).max(initial=0)]
 
 
 def _path(pairs: Complex, region: Region, beside: Array) -> tuple[Complex, Index]:
@@ -97,33 +97,27 @@ def _path(pairs: Complex, region: Region, beside: Array) -> tuple[Complex, Index
 
     Left of the end of a cut the path goes along its lower side to the end and back along the upper one.
     """
-    paths, owners = [], []
     scale = region.scale
     fastest = np.where(np.isfinite(pairs), pairs.imag, 0.0).max(axis=1, initial=0.0)
     far = _FAR * np.maximum(region.far, np.maximum(fastest, scale))
     around = np.outer(scale, np.unique(np.concatenate([1.0 + _FIRST, 1.0 - _FIRST, [1.0]])))
-    heights = np.sort(np.hstack([around, np.geomspace(1e-2 * scale, far, 8).T, beside]), axis=1)
-    for k in range(region.line.size):
-        left, size, height = float(region.line[k]), float(scale[k]), heights[k]
-        height = height[height > 0.0]
-        lip, past = _LIP * size, _END * size
-        back, parts, passed = left * (1.0 - _FIRST), list[Any](), 0.0
-        for tip in region.tips[k].tolist() if left < past else ():
-            low, high = 1j * (tip - lip), 1j * (tip + lip)
-            if tip == 0.0:
-                parts += [[past]]
-            else:
-                between = height[(height > passed) & (height < tip - lip)]
-                start = [left] if passed == 0.0 else []
-                parts += [start, left + 1j * between, [left + low], back + low, [past + low]]
-            parts += [[past + high], back[::-1] + high, [left + high]]
-            passed = tip + lip
-        if not parts:
-            parts = [[left]]
-        points = np.concatenate([*parts, left + 1j * height[height > passed]]).astype(complex)
-        paths.append(points)
-        owners.append(np.full(points.size, k, dtype=np.intp))
-    return np.concatenate(paths), np.concatenate(owners)
+    height = np.sort(np.hstack([around, np.geomspace(1e-2 * scale, far, 8).T, beside]), axis=1)
+    left, low, past = region.line[:, None], _LIP * scale[:, None], _END * scale[:, None]
+    cut = left < past
+    back = left * (1.0 - _FIRST)
+    passed, parts = np.zeros_like(left), [left + 0.0j]
+    for tip in region.tips.T[:, :, None]:
+        inside = cut & (tip > 0.0)
+        between = np.where(inside & (height > passed) & (height < tip - low), left + 1j * height, np.nan)
+        down, up = 1j * (tip - low), 1j * (tip + low)
+        parts += [between, *(np.where(inside, part + down, np.nan) for part in (left, back, past))]
+        parts[0] = np.where(cut & (tip == 0.0), past + 0.0j, parts[0])
+        parts += [np.where(cut, part + up, np.nan) for part in (past, back[:, ::-1], left)]
+        passed = np.where(cut, tip + low, passed)
+    parts.append(np.where(height > passed, left + 1j * height, np.nan))
+    points = np.hstack(parts)
+    there = ~np.isnan(points)
+    return points[there], np.nonzero(there)[0]
 
 
 @dataclass(frozen=True)
@@ -133,15 +127,28 @@ class _Deflated:
     function: Characteristic
     pairs: Complex
     alone: Complex
+    scale: Array  #: as of `Region`
 
     def at(self, points: Complex, owner: Index) -> Complex:
         """log f at points of problems, shape (k,)."""
-        found = self.function(points, owner)
-        at, pairs = points[:, None], self.pairs[owner]
-        # One logarithm of both factors of a pair: by how many turns it is off, nobody asks.
-        for gap in ((at - pairs) * (at - pairs.conj()), at - self.alone[owner]):
-            found = found - np.log(np.where(np.isfinite(gap), gap, 1.0)).sum(axis=1)
+        found = np.empty(points.shape, dtype=complex)
+        for first in range(0, points.size, _BLOCK):
+            cut = slice(first, first + _BLOCK)
+            found[cut] = self._some(points[cut], owner[cut])
         return found
+
+    def _some(self, points: Complex, owner: Index) -> Complex:
+        """As `at`; one logarithm of all factors over their sizes: by how many turns it is off, none asks."""
+        size = np.abs(points) + self.scale[owner]
+        over = (1.0 / size)[:, None]
+        at, pairs, alone = points[:, None] * over, self.pairs[owner] * over, self.alone[owner] * over
+        product, power = np.ones(points.shape, dtype=complex), np.zeros(points.shape)
+        for gap, zeros in (((at - pairs) * (at - pairs.conj()), 2), (at - alone, 1)):
+            absent = np.isnan(gap)
+            gap[absent] = 1.0
+            product *= gap.prod(axis=1)
+            power += zeros * (gap.shape[1] - absent.sum(axis=1))
+        return np.asarray(self.function(points, owner) - np.log(product) - power * np.log(size))
 
 
 def _phase(function: _Deflated, points: Complex, own: Index, scale: Array) -> tuple[Array, Flags]:

@@ -25,6 +25,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
 from solvers.rotor.vibration import critical_speeds
 from solvers.whirl.growth import Waves, growth_at, modes_at
+from solvers.whirl.laminar import Met
 
 _APART = 0.08  # first distance of speeds, relative
 _FEWEST = 9
@@ -59,15 +60,20 @@ class Looks:
 
 
 def looks(
-    rotor: Rotor, rows: Sequence[Sequence[Fill]], first: float, last: float, friction: Waves
+    rotor: Rotor,
+    rows: Sequence[Sequence[Fill]],
+    first: float,
+    last: float,
+    friction: Waves,
+    met: Sequence[Met] | None = None,
 ) -> tuple[Index, Array, Array]:
     """Points by rising row and speed from which every change of the sign of the growth is seen.
 
-    Rows, speeds, and growth rates, nan where they are not known.
+    Rows, speeds, and growth rates, nan where they are not known. `met`: of each row.
     """
 
     def at(row: Index, speed: Array) -> Looks:
-        return _looked(rotor, rows, row, speed, friction)
+        return _looked(rotor, rows, row, speed, friction, met)
 
     own = [_first_speeds(rotor, fills, first, last) for fills in rows]
     row, speed = np.repeat(np.arange(len(rows)), [part.size for part in own]), np.concatenate(own)
@@ -126,9 +132,16 @@ def _first_speeds(rotor: Rotor, fills: Sequence[Fill], first: float, last: float
     return every[(every >= first) & (every <= last)]
 
 
-def _looked(rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Waves) -> Looks:
+def _looked(
+    rotor: Rotor,
+    rows: Sequence[Sequence[Fill]],
+    row: Index,
+    speed: Array,
+    friction: Waves,
+    met: Sequence[Met] | None,
+) -> Looks:
     """Modes and growth at points, and slopes by a second speed close by."""
-    *tables, growth = modes_at(rotor, rows, row, speed, friction, _BESIDE)
+    *tables, growth = modes_at(rotor, rows, row, speed, friction, _BESIDE, met)
     root, beside = (
         np.where(rounding <= _HIDDEN * speed[:, None], roots, complex(np.nan, np.nan))
         for roots, rounding in tables
@@ -369,16 +382,18 @@ def unstable_bands(
     speed: ArrayLike,
     friction: Waves = NO_FRICTION,
     growth: Array | None = None,
+    met: Sequence[Met] | None = None,
 ) -> tuple[Bands, ...]:
     """Bands (low, high) of speed in which some whirl grows, rad/s, of each row of fills, edges refined.
 
     At speeds of its own choice between the first and the last given, so that no band is lost and none depends
     on their number [theory: whirl, eq. 32 and 33]. Next to a speed of unknown growth rate a band ends at the
-    last known one.
+    last known one. `met`: what is known of each row from other questions.
     """
     grid = np.asarray(speed, dtype=float)
-    row, points, rate = looks(rotor, rows, float(grid[0]), float(grid[-1]), friction)
-    found = _bands(rotor, rows, row, points, rate, friction)
+    known = [Met() for _ in rows] if met is None else met
+    row, points, rate = looks(rotor, rows, float(grid[0]), float(grid[-1]), friction, known)
+    found = _bands(rotor, rows, row, points, rate, friction, known)
     if growth is None:
         return found
     # Speeds asked for of which the bands say otherwise are looked from as well, and where the growth is not
@@ -393,7 +408,7 @@ def unstable_bands(
         return found
     row, points, rate = (np.concatenate([x, y[other]]) for x, y in zip((row, points, rate), own, strict=True))
     order = np.lexsort((points, row))
-    return _bands(rotor, rows, row[order], points[order], rate[order], friction)
+    return _bands(rotor, rows, row[order], points[order], rate[order], friction, known)
 
 
 def any_growth(
@@ -427,7 +442,13 @@ def _contradicts(bands: Bands, speed: Array, growth: Array) -> Flags:
 
 
 def _bands(
-    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, points: Array, rate: Array, friction: Waves
+    rotor: Rotor,
+    rows: Sequence[Sequence[Fill]],
+    row: Index,
+    points: Array,
+    rate: Array,
+    friction: Waves,
+    met: Sequence[Met],
 ) -> tuple[Bands, ...]:
     """Bands between points by rising row and speed at which the growth is known, their edges refined."""
     grows, known_there = rate > 0.0, ~np.isnan(rate)
@@ -443,7 +464,7 @@ def _bands(
     kept = (row[other] == row[here]) & (other != here) & known_there[other]
     low, high = np.minimum(here, other)[kept], np.maximum(here, other)[kept]
     first, last = (np.stack([points[at], rate[at]]) for at in (low, high))
-    edge[kept] = _refine(rotor, rows, row[low], first, last, friction)
+    edge[kept] = _refine(rotor, rows, row[low], first, last, friction, met)
     bands = zip(row[begins].tolist(), edge[~after].tolist(), edge[after].tolist(), strict=True)
     found: list[list[tuple[float, float]]] = [[] for _ in rows]
     for k, start, stop in bands:
@@ -469,6 +490,7 @@ def _refine(
     low: Array,
     high: Array,
     friction: Waves,
+    met: Sequence[Met],
 ) -> Array:
     """Speeds at which the whirl begins or ceases to grow, between those of `low` and `high`.
 
@@ -477,7 +499,7 @@ def _refine(
     """
     low, high = low.copy(), high.copy()
     first = low[1] > 0.0
-    met = np.stack([low, high])
+    seen = np.stack([low, high])
     for _ in range(_BISECTIONS):
         active = np.flatnonzero(high[0] - low[0] > _WIDTH * high[0])
         if active.size == 0:
@@ -487,7 +509,7 @@ def _refine(
         share = np.full(a.shape, 0.5)
         np.divide(at_a, at_a - at_b, out=share, where=signs)
         near = np.where(signs, _NEAR, 0.25)
-        zero, off = _zero(met[:, :, active])
+        zero, off = _zero(seen[:, :, active])
         better, off = (zero - a) / width, off / width
         trusted = (np.abs(better - 0.5) < 0.5 + _NEAR) & (off < _TRUSTED)
         share, near = np.where(trusted, np.clip(better, 0.0, 1.0), share), np.where(trusted, off, near)
@@ -497,7 +519,8 @@ def _refine(
         sides = np.where(trusted & ~signs, [beyond, _ROUNDED * beyond], [[-1.0], [1.0]])
         parts = np.concatenate([share + sides * near, np.full((1, a.size), 0.5)])
         looks = a + np.sort(np.clip(parts, 0.0, 1.0), axis=0) * width
-        found = growth_at(rotor, rows, np.tile(row[active], 3), looks.ravel(), friction)[0].reshape(3, -1)
+        at_rows = np.tile(row[active], 3)
+        found = growth_at(rotor, rows, at_rows, looks.ravel(), friction, met)[0].reshape(3, -1)
         # The ends and the looks in order; the edge is before the first that is unlike the lower end.
         points = np.concatenate([a[None], looks, b[None]])
         rates = np.concatenate([at_a[None], found, at_b[None]])
@@ -507,19 +530,19 @@ def _refine(
         high[:, active] = points[beyond, at], rates[beyond, at]
         fresh = np.full((3, *low.shape), np.nan)
         fresh[:, 0, active], fresh[:, 1, active] = looks, found
-        met = np.concatenate([met, fresh])
+        seen = np.concatenate([seen, fresh])
     return np.asarray(0.5 * (low[0] + high[0]))
 
 
-def _zero(met: Array) -> tuple[Array, Array]:
+def _zero(seen: Array) -> tuple[Array, Array]:
     """Speed of no growth by interpolation through points (speed, growth), (m, 2, k); how far it may be off.
 
     The speed is a polynomial of the growth through the three and four of least growth, without those that
     rounding made zero; nan where all have one sign.
     """
-    size = np.where(met[:, 1] == 0.0, np.nan, np.abs(met[:, 1]))
+    size = np.where(seen[:, 1] == 0.0, np.nan, np.abs(seen[:, 1]))
     order = np.argsort(size, axis=0, kind="stable")[:4]  # nan last
-    speed, growth = (np.take_along_axis(part, order, axis=0) for part in (met[:, 0], met[:, 1]))
+    speed, growth = (np.take_along_axis(part, order, axis=0) for part in (seen[:, 0], seen[:, 1]))
     growth = np.where(
         (growth > 0.0).any(axis=0) & (growth < 0.0).any(axis=0) & (growth != 0.0), growth, np.nan
     )

@@ -17,7 +17,7 @@ from solvers.checked_model import CheckedModel
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import Rotor
 from solvers.sloshing.reduced import section_layer, section_layers
-from solvers.whirl.laminar import laminar_modes
+from solvers.whirl.laminar import Met, laminar_modes
 from solvers.whirl.planar import Modes, PlanarProblem, planar_modes
 from solvers.whirl.sections import drum_modes, standing_modes
 from solvers.whirl.system import SystemModes, circles_of, coupled_matrices, linear_modes
@@ -32,16 +32,22 @@ Waves = Friction | CheckedModel
 
 
 def asynchronous_growth(
-    rotor: Rotor, fills: Sequence[Fill], speed: ArrayLike, friction: Waves = NO_FRICTION
+    rotor: Rotor,
+    fills: Sequence[Fill],
+    speed: ArrayLike,
+    friction: Waves = NO_FRICTION,
+    met: Met | None = None,
 ) -> tuple[Array, Array]:
     """Growth rate and whirl speed of the fastest-growing whirl [theory: whirl, eq. 7], shape (n,).
 
     1/s, unstable above 0, 0 where rounding cannot tell it from 0, nan where modes were not found; rad/s in
     the standing frame, positive with the spin. The laminar law takes each liquid's viscosity, the quadratic
-    one does not act on an infinitesimal whirl. An `InputError` also for too many different layers.
+    one does not act on an infinitesimal whirl. An `InputError` also for too many different layers. `met`:
+    what is known of the machine and what becomes known, for further questions about it.
     """
-    growth, whirl_speed = growth_map(rotor, [fills], speed, friction)
-    return growth[0], whirl_speed[0]
+    spin = np.array(speed, dtype=float).reshape(-1)
+    row = np.zeros(spin.size, dtype=np.intp)
+    return growth_at(rotor, [fills], row, spin, friction, None if met is None else [met])
 
 
 def growth_map(
@@ -61,8 +67,9 @@ def growth_at(
     row: Index,
     speed: Array,
     friction: Waves = NO_FRICTION,
+    met: Sequence[Met] | None = None,
 ) -> tuple[Array, Array]:
-    """Growth rate and whirl speed at points (row, speed), as `growth_map`."""
+    """Growth rate and whirl speed at points (row, speed), as `growth_map`; `met`: of each row."""
     if not np.all(np.isfinite(speed) & (speed > 0.0)):
         raise InputError("speed", speed.tolist(), "finite numbers above 0")
     if isinstance(rotor, Jeffcott):
@@ -70,7 +77,8 @@ def growth_at(
     growth, whirl_speed = np.full((2, speed.size), np.nan)
     for k in np.unique(row).tolist():
         here = np.flatnonzero(row == k)
-        modes = system_modes(rotor, rows[k], speed[here], friction, every=False)
+        own = None if met is None else met[k]
+        modes = system_modes(rotor, rows[k], speed[here], friction, every=False, met=own)
         growth[here], whirl_speed[here] = _fastest(modes, speed[here])
     return growth, whirl_speed
 
@@ -82,10 +90,12 @@ def system_modes(
     friction: Waves = NO_FRICTION,
     near: SystemModes | None = None,
     every: bool = True,
+    met: Met | None = None,
 ) -> SystemModes:
     """All whirl modes of any rotor with its fills, or those that grow most [theory: whirl, eq. 7].
 
     `near`: those at speeds next to these, from which an iteration follows them; it looks for no others then.
+    `met`: what is known of the machine, where a search needs a start.
     """
     heavy, law = rotor.system(), _waves_of(fills, friction)
     if isinstance(law, CheckedModel):
@@ -104,7 +114,7 @@ def system_modes(
     layers = [(plane, layer) for plane, layer in rings if layer is not None]
     _require_few(len(layers))
     if any(layer.stokes > 0.0 for _, layer in layers):
-        return laminar_modes(heavy, layers, speed, near, every)
+        return laminar_modes(heavy, layers, speed, near, every, met)
     return linear_modes(coupled_matrices(heavy, layers, speed), circles_of(heavy, layers))
 
 
@@ -206,13 +216,19 @@ Parts = list[tuple[Index, SystemModes | Modes]]
 
 
 def modes_at(
-    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Waves, beside: float
+    rotor: Rotor,
+    rows: Sequence[Sequence[Fill]],
+    row: Index,
+    speed: Array,
+    friction: Waves,
+    beside: float,
+    met: Sequence[Met] | None = None,
 ) -> tuple[tuple[Complex, Array], tuple[Complex, Array], Array]:
     """Modes of small whirls and their rounding at points (row, speed) and next to them; largest growth rates.
 
     growth + i frequency, 1/s, each mode once, in a frame in which coupled modes meet where they are alike; 0
     for a growth that is rounding, nan where a point has fewer modes, shape (n, m). Next to them: at speeds
-    larger by the share `beside`, without a proof that no mode is missing.
+    larger by the share `beside`, without a proof that no mode is missing. `met`: of each row.
     """
 
     def parts(row: Index, spin: Array, near: Parts) -> Parts:
@@ -220,11 +236,11 @@ def modes_at(
         if isinstance(rotor, Jeffcott):
             machines = [(rotor, fills) for fills in rows]
             return list(_planar_parts(machines, [friction] * len(rows), row, spin, close))
-        own = [(np.flatnonzero(row == k), rows[k]) for k in np.unique(row).tolist()]
+        own = [(np.flatnonzero(row == k), k) for k in np.unique(row).tolist()]
         known = [modes if isinstance(modes, SystemModes) else None for modes in close] or [None] * len(own)
         return [
-            (here, system_modes(rotor, fills, spin[here], friction, modes))
-            for (here, fills), modes in zip(own, known, strict=True)
+            (here, system_modes(rotor, rows[k], spin[here], friction, modes, met=met[k] if met else None))
+            for (here, k), modes in zip(own, known, strict=True)
         ]
 
     size, next_to = speed.size, speed * (1.0 + beside)
@@ -261,6 +277,8 @@ def _table(parts: Parts, size: int) -> tuple[Complex, Array]:
             root, rounding = np.where(known, found.root, complex(np.nan, np.nan)), found.rounding
         else:
             root, rounding = (1j * found.slip).T, found.rounding.T
+        kept = ~np.isnan(root).all(axis=0)
+        root, rounding = root[:, kept], rounding[:, kept]
         seen.append((here, np.where(np.abs(root.real) <= rounding, 1j * root.imag, root), rounding))
     width = max((part.shape[1] for _, part, _ in seen), default=0)
     roots = np.full((size, width), complex(np.nan, np.nan))

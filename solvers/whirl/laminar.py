@@ -7,22 +7,21 @@ layers eliminated the modes are zeros of a determinant, found together by Aberth
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from fluid.whirl import Layer, plate_terms, steady_rate, stokes_rate
+from fluid.whirl import Layer, plate_rate, plate_terms, steady_rate, stokes_rate
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.system import RotorSystem
-from solvers.whirl.count import Characteristic, Region, missed_modes
+from solvers.whirl.count import Characteristic, Region, missed_modes, packed
 from solvers.whirl.sheets import standing_roots
 from solvers.whirl.system import (
     SystemModes,
-    circles_of,
     coupled_matrices,
     joined,
-    linear_modes,
+    linear_roots,
     sense_of,
 )
 
@@ -30,15 +29,21 @@ Placed = tuple[float, Layer]
 Groups = Sequence[tuple[list[int], int]]  # equal layers, and in how many ways they move with the rotor
 
 _EPS = float(np.finfo(float).eps)
+_NONE = complex(np.nan, np.nan)
 _BLOCK = 128  # speeds whose arrays fit the processor's cache
 _APART = 1.05  # of two speeds: from the modes at one those at the other are found
+_STEEPEST = 3.0  # change of a mode over that of the spin, beyond which none is foretold
 _FEW = 32
+_NEXT = 1e-5  # relative distance up to which a second speed tells slopes
 _LESS = 0.03  # of the spin: modes that grow by so much less are not followed where the most growing serve
 _SWEEPS = 60
 _OWN = 8  # steps to the waves with floor and lid at their own frequencies
 _WAVE = 1e-9  # relative: a step after which such a wave is exact
 _CUTS = (1.0, 3.0)  # over the spin: where the roots of the drags on circles along and against it end
 _STEP = 1e-13  # relative, at which a root counts as found
+_CLOSE = 1e-8  # the same next to a speed at which it is known, where a further step would be rounding
+_REAL = 1e-12  # relative: imaginary part of a real root, by rounding
+_ALIKE = 1e-6  # relative: the sense is told of modes that grow so nearly as much as the one that grows most
 _GONE = -1e300  # lambda of what has no wave, 1/s
 _LEAST = 1e-7  # relative, which noise of the determinant may hide
 _BESIDE = (1e-7, 1e-5, 1e-3)  # of the spin: how far left of the mode that grows most the others are counted
@@ -93,19 +98,81 @@ class _Circles:
     parts: Complex
 
 
+@dataclass
+class Met:
+    """Modes of a machine that a study has found on its way, all of a speed, from which others start."""
+
+    speed: Array = field(default_factory=lambda: np.zeros(0))
+    half: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=complex))  #: as of `_half`
+    slope: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=complex))  #: over the spin
+
+    def add(self, speed: Array, modes: SystemModes) -> None:
+        """Keep modes where none is missing."""
+        whole = np.flatnonzero(modes.complete & (modes.found | (modes.root == _GONE)).all(axis=1))
+        half = _half(modes.root[whole], modes.found[whole], speed[whole])
+        self.speed = np.concatenate([self.speed, speed[whole]])
+        self.half, self.slope = _stacked(self.half, half), _stacked(self.slope, np.zeros_like(half))
+
+    def lead(self, speed: Array, half: Complex, found: Flags) -> None:
+        """Take slopes from the same modes at speeds next to some that were added last."""
+        if self.speed.size == 0:
+            return
+        at = self._nearest(speed)
+        gap = speed - self.speed[at]
+        row = np.flatnonzero((gap > 0.0) & (gap <= _NEXT * speed))
+        width = min(half.shape[1], self.half.shape[1])
+        change = (half - self.half[at][:, :width])[row, :width] / gap[row, None]
+        sure = found[row, :width] & (np.abs(change) <= _STEEPEST)
+        self.slope[at[row], :width] = np.where(sure, change, 0.0)
+
+    def near(self, speed: Array) -> tuple[Flags, Complex]:
+        """At which speeds some are close by, and what is expected there from the nearest, shape (k, m)."""
+        if self.speed.size == 0:
+            return np.zeros(speed.shape, dtype=bool), np.zeros((0, 0), dtype=complex)
+        at = self._nearest(speed)
+        close = np.abs(np.log(self.speed[at] / speed)) <= np.log(_APART)
+        at = at[close]
+        return close, self.half[at] + self.slope[at] * (speed[close] - self.speed[at])[:, None]
+
+    def _nearest(self, speed: Array) -> Index:
+        """Where those at the nearest speed stand, for each of some."""
+        order = np.argsort(self.speed, kind="stable")
+        above = np.searchsorted(self.speed[order], speed)
+        sides = order[np.clip(np.stack([above - 1, above]), 0, order.size - 1)]
+        away = np.abs(np.log(self.speed[sides] / speed))
+        return np.asarray(np.where(away[0] <= away[1], sides[0], sides[1]))
+
+
+def _stacked(first: Complex, second: Complex) -> Complex:
+    """Rows of one table below those of another, nan where one is wider."""
+    width = max(first.shape[1], second.shape[1])
+    found = np.full((len(first) + len(second), width), _NONE)
+    found[: len(first), : first.shape[1]], found[len(first) :, : second.shape[1]] = first, second
+    return found
+
+
+def _half(root: Complex, found: Flags, speed: Array) -> Complex:
+    """Roots above the real axis, which stand for their conjugates as well, and on it; nan for others."""
+    real = np.abs(root.imag) <= _REAL * (np.abs(root) + speed[:, None])
+    kept = found & (real | (root.imag > 0.0))
+    return packed(np.where(kept, np.where(real, root.real, root), _NONE))
+
+
 def laminar_modes(
     system: RotorSystem,
     layers: Sequence[Placed],
     speed: Array,
     near: SystemModes | None = None,
     every: bool = True,
+    met: Met | None = None,
 ) -> SystemModes:
     """Modes with laminar friction, whose drag depends on the mode [theory: whirl, eq. 12-14].
 
     From the rotor with liquid at rest and the waves of each layer on a drum at rest; waves of equal layers
     against one another do not move the rotor. All at once where the argument principle says that a mode which
     grows more was missed. `near`: modes at speeds next to these, from which they are followed; others are not
-    looked for then. Without `every` only those that grow most are found at some of the speeds.
+    looked for then. Without `every` only those that grow most are found at some of the speeds, and the way
+    round is told of them. `met`: what is known of the machine, from which the search starts and which grows.
     """
     groups = _groups(system, layers)
     weights = np.ones(len(layers))
@@ -118,93 +185,74 @@ def laminar_modes(
     ]
     if near is not None:
         own = near.root.shape[1] - sum(wave.shape[1] for wave in waves)
-        start = np.where(near.found, near.root, complex(np.nan, np.nan))[:, :own]
-        return _with_waves(_aberth(problem, start, speed), waves, speed)
-    apart, of = _anchors(speed)
-    modes = _in_blocks(problem, groups, speed[apart])
-    beside = np.setdiff1d(np.arange(speed.size), apart)
-    if beside.size:
-        # Modes hardly differ from those at a speed close by: from there few sweeps lead to them.
-        more = _in_blocks(problem, groups, speed[beside], modes.at(of[beside]), every)
-        width = max(modes.root.shape[1], more.root.shape[1])
-        whole = joined([part.widened(width, _GONE) for part in (modes, more)])
-        modes = whole.at(np.argsort(np.concatenate([apart, beside])))
+        start = _half(near.root[:, :own], near.found[:, :own], speed)
+        modes = _aberth(problem, start, speed, half=True, least=_CLOSE)
+        if met is not None:
+            met.lead(speed, modes.root[:, : start.shape[1]], modes.found[:, : start.shape[1]])
+        return _with_waves(modes, waves, speed)
+    known = Met() if met is None else met
+    lonely = np.flatnonzero(~known.near(speed)[0])
+    first = lonely[_anchors(speed[lonely])]
+    parts, places = [], []
+    for cut in _blocks(first):
+        parts.append(_all_counted(problem, _starts(problem, groups, speed[cut]), speed[cut]))
+        known.add(speed[cut], parts[-1])
+        places.append(cut)
+    # Modes hardly differ from those at a speed close by: from there few sweeps lead to them.
+    rest = np.setdiff1d(np.arange(speed.size), first)
+    close, start = known.near(speed[rest])
+    beside = rest[close]
+    for cut in _blocks(rest[~close]):
+        parts.append(_all_counted(problem, _starts(problem, groups, speed[cut]), speed[cut]))
+        places.append(cut)
+    for cut in _blocks(np.arange(beside.size)):
+        parts.append(_followed(problem, start[cut], speed[beside[cut]], every))
+        places.append(beside[cut])
+        if every:
+            known.add(speed[beside[cut]], parts[-1])
+    width = max(part.root.shape[1] for part in parts)
+    modes = joined([part.widened(width, _GONE) for part in parts]).at(np.argsort(np.concatenate(places)))
+    if not every:
+        modes = _with_sense(problem, modes, speed)
     return _with_waves(modes, waves, speed)
 
 
-def _anchors(speed: Array) -> tuple[Index, Index]:
-    """Speeds some way apart by their indices, and for each speed which of them is next below it.
-
-    All of few speeds, whose sweeps cost the same whatever they start from.
-    """
+def _anchors(speed: Array) -> Index:
+    """Speeds some way apart; all of few, whose sweeps cost the same whatever they start from."""
     if speed.size <= _FEW:
-        return np.arange(speed.size), np.arange(speed.size)
-    order = np.argsort(speed, kind="stable")
+        return np.arange(speed.size)
     kept: list[int] = []
-    of = np.zeros(speed.size, dtype=np.intp)
-    for k in order.tolist():
+    for k in np.argsort(speed, kind="stable").tolist():
         if not kept or speed[k] > _APART * speed[kept[-1]]:
             kept.append(k)
-        of[k] = len(kept) - 1
-    return np.array(kept, dtype=np.intp), of
+    return np.array(kept, dtype=np.intp)
 
 
-def _in_blocks(
-    problem: _Problem,
-    groups: Groups,
-    speed: Array,
-    near: SystemModes | None = None,
-    every: bool = True,
-) -> SystemModes:
-    """Modes at speeds, some at a time; `near` and `every` as of `_certain`."""
-    cuts = [np.arange(first, min(first + _BLOCK, speed.size)) for first in range(0, speed.size, _BLOCK)]
-    parts = [
-        _certain(problem, groups, speed[cut], None if near is None else near.at(cut), every) for cut in cuts
-    ]
-    width = max((part.root.shape[1] for part in parts), default=0)
-    return joined([part.widened(width, _GONE) for part in parts])
+def _blocks(which: Index) -> list[Index]:
+    """Some at a time."""
+    return [which[first : first + _BLOCK] for first in range(0, which.size, _BLOCK)]
 
 
-def _certain(
-    problem: _Problem,
-    groups: Groups,
-    speed: Array,
-    near: SystemModes | None = None,
-    every: bool = True,
-) -> SystemModes:
-    """Modes of a block of speeds; where some were missed, from all of them at once.
+def _followed(problem: _Problem, start: Complex, speed: Array, every: bool) -> SystemModes:
+    """Modes of a block of speeds from what is expected of all above the real axis and on it.
 
-    `near`: those at speeds close by. Without `every` those of them are followed that grow most, up to where
-    one is missed.
+    Without `every` those are followed that grow most, up to where one is missed.
     """
-    whole = np.zeros(speed.size, dtype=bool)
-    if near is not None:
-        whole = near.complete & (near.found | (near.root == _GONE)).all(axis=1)
-    known, unknown = np.flatnonzero(whole), np.flatnonzero(~whole)
-    parts = []
-    if unknown.size:
-        parts.append(_all_counted(problem, _starts(problem, groups, speed[unknown]), speed[unknown]))
-    if near is not None and known.size:
-        close, spin = near.at(known), speed[known]
-        start = np.where(close.found, close.root, complex(np.nan, np.nan))
-        if every:
-            parts.append(_all_counted(problem, start, spin))
-        else:
-            most = np.nanmax(start.real, axis=1) - _LESS * spin
-            followed = (start.real >= most[:, None]) & (start.imag >= 0.0)
-            modes = _counted(problem, _aberth(problem, start, spin, followed), spin, start)
-            missed = np.flatnonzero(~modes.complete)
-            if missed.size:
-                modes = modes.replaced(missed, _all_counted(problem, start[missed], spin[missed]), _GONE)
-            parts.append(modes)
-    width = max((part.root.shape[1] for part in parts), default=0)
-    modes = joined([part.widened(width, _GONE) for part in parts])
-    return modes.at(np.argsort(np.concatenate([unknown, known])))
+    if every:
+        return _all_counted(problem, start, speed, half=True)
+    most = np.nanmax(start.real, axis=1) - _LESS * speed
+    modes = _aberth(problem, start, speed, start.real >= most[:, None], half=True)
+    modes = _counted(problem, modes, speed, start)
+    missed = np.flatnonzero(~modes.complete)
+    if missed.size:
+        again = _all_counted(problem, start[missed], speed[missed], half=True)
+        modes = modes.replaced(missed, again, _GONE)
+    return modes
 
 
-def _all_counted(problem: _Problem, start: Complex, speed: Array) -> SystemModes:
-    """Modes from starting values; where some were missed, from all of them at once."""
-    modes = _counted(problem, _aberth(problem, start, speed), speed, start)
+def _all_counted(problem: _Problem, start: Complex, speed: Array, half: bool = False) -> SystemModes:
+    """Modes from starting values as of `_aberth`; where some were missed, from all of them at once."""
+    modes = _counted(problem, _aberth(problem, start, speed, half=half), speed, start)
     missed = np.flatnonzero(~modes.complete)
     size = len(problem.system.coordinates) + 2 * len(problem.layers)
     if missed.size and size <= _MOST:
@@ -223,9 +271,9 @@ def _starts(problem: _Problem, groups: Groups, speed: Array) -> Complex:
     for plane, layer in problem.layers:
         at = problem.system.at(plane)
         heavy = replace(heavy, mass=heavy.mass + layer.mass * at.T @ at)
-    dry = linear_modes(coupled_matrices(heavy, [], speed), circles_of(heavy, []))
+    dry = linear_roots(coupled_matrices(heavy, [], speed))
     turn = 1j * speed[:, None]
-    started = [dry.root * (1.0 + 1e-3 * (1.0 + 0.37j) * (1.0 + np.arange(dry.root.shape[1]) / 3.0))]
+    started = [dry * (1.0 + 1e-3 * (1.0 + 0.37j) * (1.0 + np.arange(dry.shape[1]) / 3.0))]
     for members, rank in groups:
         wave = _layer_waves(problem.layers[members[0]][1], speed)
         for k in range(rank):
@@ -291,7 +339,7 @@ def _groups(system: RotorSystem, layers: Sequence[Placed]) -> list[tuple[list[in
     ranks = []
     for members in found.values():
         along = np.array([_CIRCLES[0] @ system.at(layers[j][0]) for j in members])
-        ranks.append(int(np.linalg.matrix_rank(along)))
+        ranks.append(int(np.linalg.matrix_rank(along)) if len(members) > 1 else 1)
     return list(zip(found.values(), ranks, strict=True))
 
 
@@ -328,42 +376,71 @@ def _layer_waves(layer: Layer, speed: Array) -> Complex:
     return waves
 
 
-def _aberth(problem: _Problem, start: Complex, speed: Array, followed: Flags | None = None) -> SystemModes:
+def _aberth(
+    problem: _Problem,
+    start: Complex,
+    speed: Array,
+    followed: Flags | None = None,
+    half: bool = False,
+    least: float = _STEP,
+) -> SystemModes:
     """Zeros of the determinant from starting values; nan starts stay nan.
 
-    Converged ones are left out of further sweeps, but the others keep away from them. Where some are followed
-    those above the real axis take one step, and only they go on.
+    Converged ones, by a step of `least`, are left out of further sweeps, but the others keep away from them.
+    With `half` starts stand for their conjugates as well, which move as they do, and those on the real axis
+    stay there. Where some are followed all take one step, and only they go on.
     """
     absent = np.isnan(start)
     root = np.where(absent, 0.0, start)
+    twin = half & (root.imag != 0.0)
     step, last = np.full(root.shape, np.inf), np.zeros(root.shape)
-    row, column = np.nonzero(~absent if followed is None else ~absent & (root.imag >= 0.0))
+    row, column = np.nonzero(~absent)
     for _ in range(_SWEEPS):
         if row.size == 0:
             break
         own = root[row, column]
         here = _eliminate(problem, own, speed[row])
         slope = np.trace(_solve(here.matrix, here.slope), axis1=-2, axis2=-1) + here.poles
-        gap = own[:, None] - root[row]
-        other = np.zeros_like(gap)
-        np.divide(1.0, gap, out=other, where=(np.abs(gap) > 0.0) & ~absent[row])
-        bottom = slope - other.sum(axis=1)
+        bottom = slope - _repulsion(own, root[row], ~absent[row])
+        if half:
+            bottom -= _repulsion(own, root[row].conj(), twin[row])
         moved = np.zeros_like(own)
         np.divide(1.0, bottom, out=moved, where=np.abs(bottom) > 0.0)
+        if half:
+            moved.imag[~twin[row, column]] = 0.0
         root[row, column] = own - moved
         last[row, column], step[row, column] = step[row, column], np.abs(moved)
-        on = np.abs(moved) > _STEP * (np.abs(root[row, column]) + speed[row])
+        on = np.abs(moved) > least * (np.abs(root[row, column]) + speed[row])
         on &= True if followed is None else followed[row, column]
         row, column = row[on], column[on]
     scale = np.abs(root) + speed[:, None]
     found = (step <= _LEAST * scale) & ~absent
     last = np.where(np.isfinite(last), last, step)
     rounding = 16.0 * (_EPS * scale + np.where(found, np.maximum(step, last * _LEAST), 0.0))
-    sense = np.ones(root.shape)
-    sense[found] = _sense(problem, root[found], speed[np.nonzero(found)[0]])
+    if half:
+        root, absent = np.hstack([root, root.conj()]), np.hstack([absent, ~twin])
+        rounding, found = np.hstack([rounding, rounding]), np.hstack([found, found & twin])
     # What has no wave decays faster than any that has.
     root = np.where(absent, _GONE, root)
-    return SystemModes(root, sense, rounding, found, np.zeros(speed.shape, dtype=bool))
+    return SystemModes(root, np.ones(root.shape), rounding, found, np.zeros(speed.shape, dtype=bool))
+
+
+def _repulsion(own: Complex, others: Complex, present: Flags) -> Complex:
+    """Sum of 1/(own - other) over the other roots of its speed that are present, shape (k,)."""
+    gap = own[:, None] - others
+    other = np.zeros_like(gap)
+    np.divide(1.0, gap, out=other, where=(gap != 0.0) & present)
+    return np.asarray(other.sum(axis=1))
+
+
+def _with_sense(problem: _Problem, modes: SystemModes, speed: Array) -> SystemModes:
+    """Modes with the way round of those that grow most."""
+    rate = np.where(modes.found, modes.root.real, -np.inf)
+    scale = np.where(modes.found, np.abs(modes.root) + speed[:, None], 0.0)
+    most = modes.found & (rate >= rate.max(axis=1, keepdims=True, initial=-np.inf) - _ALIKE * scale)
+    sense = modes.sense.copy()
+    sense[most] = _sense(problem, modes.root[most], speed[np.nonzero(most)[0]])
+    return replace(modes, sense=sense)
 
 
 def _sense(problem: _Problem, root: Complex, spin: Array) -> Array:
@@ -407,11 +484,12 @@ class _Eliminated:
 
 
 def _eliminate(problem: _Problem, root: Complex, spin: Array, slopes: bool = True) -> _Eliminated:
-    """Rotor and layers at values of lambda [theory: whirl, eq. 14]; without slopes those are 0."""
+    """Rotor and layers at values of lambda [theory: whirl, eq. 14], with slopes or without."""
     c, size = problem.circles, len(problem.system.coordinates)
     turned = root - 1j * c.sense * spin
     friction = stokes_rate(c.stokes, -1j * turned)
-    plates, rise = plate_terms(c.tanh, c.sense * spin, -1j * turned)
+    plate = c.tanh, c.sense * spin, -1j * turned
+    plates, rise = plate_terms(*plate) if slopes else (plate_rate(*plate), None)
     rate = c.rate + c.lids * plates
     # W, in the slip, where films keep their digits, and its slope; W d = -(1 - T)/2 lambda^2 w.
     coriolis = 2j * c.sense * c.tanh * spin
@@ -423,9 +501,8 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array, slopes: bool = Tru
     # Of the rotor's matrices and of the layers' places, in one product.
     powers = np.concatenate([[np.square(root), root, root * spin, np.ones_like(root)], force])
     matrix = (powers.T @ c.parts).reshape(-1, size, size)
-    if not slopes:
-        nothing = np.zeros_like(root)
-        return _Eliminated(matrix, np.zeros_like(matrix), waves, nothing, share)
+    if rise is None:
+        return _Eliminated(matrix, matrix[:0], waves, root[:0], share)
     bend = 2.0 * turned - coriolis + rate + 1.5 * friction - 1j * c.lids * rise * turned
     change = c.mass * root * (2.0 - 4.0 * share + root * share * bend / wave)
     powers = np.concatenate([[2.0 * root, np.ones_like(root), spin, np.zeros_like(root)], change])

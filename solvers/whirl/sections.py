@@ -35,6 +35,7 @@ _FOLLOWED = 6  # modes at a speed whose laminar friction is computed at their ow
 _STEPS = 30
 _BESIDE = 3e-14 * (1.0 + 1.0j)
 _SETTLED = 1e-12  # relative step at which a mode is found
+_ROUNDING = 1e-15  # the same of the next step, as far as two show it
 _SHARE = 1e-7  # of the spin: how far left of the mode that grows most the others are counted
 _ASIDE = 1e-4  # of the spin: how far left of that the others start at least
 _SAME = 1e-9  # of the spin: modes as near as that are one
@@ -199,7 +200,7 @@ def most_growing(search: MostGrowing, near: SystemModes | None = None) -> System
     if near is not None:
         row, column = np.nonzero(near.found)
         start = near.root[row, column]
-        follow = _followed(search, start, row, _shapes(search.matrix(start * (1.0 + _BESIDE), row)))
+        follow = _followed(search, start, row, search.matrix)
         root, found = near.root.copy(), near.found.copy()
         root[row, column], found[row, column] = follow[0], follow[2]
         return replace(near, root=root, found=found)
@@ -243,9 +244,12 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index) -> Sy
     """
     start, others = starts
     first, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
-    lam, slowly = (first * (1.0 + _BESIDE))[:, None, None], search.slowly.at(owner)
-    plain = lam * (lam * slowly.mass + slowly.damping) + slowly.stiffness
-    last, shapes, settled = _followed(search, first, owner, _shapes(plain))
+
+    def plain(root: Complex, owner: Index) -> Complex:
+        lam, slowly = root[:, None, None], search.slowly.at(owner)
+        return np.asarray(lam * (lam * slowly.mass + slowly.damping) + slowly.stiffness)
+
+    last, shapes, settled = _followed(search, first, owner, plain)
     root, found = last.reshape(start.shape), settled.reshape(start.shape)
     shape = shapes.reshape(*start.shape, -1)
     along, against = _sizes(search.circles, shape)
@@ -304,16 +308,18 @@ def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:
 
 
 def _followed(
-    search: MostGrowing, root: Complex, owner: Index, shape: Complex
+    search: MostGrowing, root: Complex, owner: Index, matrix: Callable[[Complex, Index], Complex]
 ) -> tuple[Complex, Complex, Flags]:
     """Modes by Newton's method, each with its own laminar friction, shapes (k, N), which converged.
 
-    From starts above the real axis, shape (k,), of the speeds they belong to.
+    From starts above the real axis, shape (k,), of the speeds they belong to, and their shapes by `matrix`.
     """
     root, found = root.copy(), np.zeros(root.shape, dtype=bool)
+    shape = np.zeros((root.size, len(search.slowly.mass)), dtype=complex)
     for first in range(0, root.size, _FEW):
         part = slice(first, first + _FEW)
-        root[part], shape[part], found[part] = _by_newton(search, root[part], owner[part], shape[part])
+        begin = _shapes(matrix(root[part] * (1.0 + _BESIDE), owner[part]))
+        root[part], shape[part], found[part] = _by_newton(search, root[part], owner[part], begin)
     return root, shape, found
 
 
@@ -322,6 +328,7 @@ def _by_newton(
 ) -> tuple[Complex, Complex, Flags]:
     """See `_followed`, of a few modes whose matrices fit the processor's cache, shape (k,)."""
     on, found = np.arange(root.size), np.zeros(root.shape, dtype=bool)
+    before = np.full(root.shape, np.nan)
     for _ in range(_STEPS):
         # A mode met to rounding makes the matrix singular to rounding, which is wanted; so little away it is
         # never exactly so.
@@ -333,7 +340,10 @@ def _by_newton(
         step = (np.take_along_axis(shape[on], anchor, -1) / largest)[:, 0]
         root[on] = near - step
         shape[on] = solved / largest
-        settled = np.abs(step) <= _SETTLED * np.abs(root[on])
+        # Steps that shrink by their square: the next one would be less than rounding.
+        size, whole = np.abs(step), np.abs(root[on])
+        settled = (size <= _SETTLED * whole) | (size * np.square(size / before[on]) <= _ROUNDING * whole)
+        before[on] = size
         found[on[settled]] = True
         on = on[~settled]
         if on.size == 0:
@@ -420,6 +430,14 @@ class StandingMatrices:
     laminar: Array  #: of `CircleLayer`, times the density, shape (3, N, N)
     quarter: Array  #: multiplies the liquid's complex coordinates by i, shape (N, N)
     circles: tuple[tuple[float, CircleLayer], ...]  #: layers and their planes
+
+    @cached_property
+    def rotor(self) -> tuple[Array, Array, Array]:
+        """Mass, damping and stiffness of the rotor's own coordinates, shape (r^2,) and (n, r^2) twice."""
+        own = slice(0, len(self.mass) - 2 * sum(len(circle.moment) for _, circle in self.circles))
+        count = len(self.damping)
+        damping, stiffness = (part[:, own, own].reshape(count, -1) for part in (self.damping, self.stiffness))
+        return self.mass[own, own].ravel(), damping, stiffness
 
 
 def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> StandingMatrices:
@@ -522,12 +540,11 @@ def standing_determinant(
     [theory: sections, eq. 12]; the phase but for whole turns.
     """
     count, spin = len(system.coordinates), speed[owner]
-    own = slice(0, count)
-    rotor = np.asarray(np.square(root) * found.mass[own, own, None], dtype=complex)
-    rotor += root * np.moveaxis(found.damping[owner, own, own], 0, -1)
-    rotor += np.moveaxis(found.stiffness[owner, own, own], 0, -1)
+    mass, damping, stiffness = found.rotor
+    rotor = root[:, None] * (root[:, None] * mass + damping[owner]) + stiffness[owner]
     total = np.zeros(root.shape, dtype=complex)
     known: list[tuple[CircleLayer, Any]] = []
+    pulls, pulled = list[Complex](), list[Complex]()
     for plane, circle in found.circles:
         same = [answer for other, answer in known if _same_circle(circle, other)]
         answers = same[0] if same else _circle_answers(circle, root, spin)
@@ -535,9 +552,11 @@ def standing_determinant(
         at = system.at(plane)
         for sense, (log_size, answer) in zip((-1j, 1j), answers, strict=True):
             pull = at.T @ np.array([1.0, sense]) / np.sqrt(2.0)
-            rotor -= np.square(np.square(root)) * answer * np.outer(pull, pull.conj())[..., None]
+            pulls.append(np.square(np.square(root)) * answer)
+            pulled.append(np.outer(pull, pull.conj()).ravel())
             total += log_size
-    unit, size = np.linalg.slogdet(np.moveaxis(rotor, -1, 0))
+    rotor -= np.stack(pulls, axis=1) @ np.array(pulled)
+    unit, size = np.linalg.slogdet(rotor.reshape(-1, count, count))
     return np.asarray(total + size + 1j * np.angle(unit))
 
 

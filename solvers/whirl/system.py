@@ -80,6 +80,8 @@ class SystemModes:
     def widened(self, width: int, gone: float) -> SystemModes:
         """Modes with others not found appended, up to `width` at each speed, lambda there `gone`."""
         more = ((0, 0), (0, width - self.root.shape[1]))
+        if width == self.root.shape[1]:
+            return self
         return SystemModes(
             np.pad(self.root, more, constant_values=gone),
             np.pad(self.sense, more, constant_values=1.0),
@@ -91,10 +93,9 @@ class SystemModes:
     def replaced(self, which: Index, others: SystemModes, gone: float) -> SystemModes:
         """Modes with those at some speeds in place of its own, lambda `gone` where one lacks a mode."""
         width = max(self.root.shape[1], others.root.shape[1])
-        found, others = self.widened(width, gone), others.widened(width, gone)
-        for part in fields(found):
-            getattr(found, part.name)[which] = getattr(others, part.name)
-        return found
+        kept = np.setdiff1d(np.arange(len(self.root)), which)
+        found = joined([self.at(kept).widened(width, gone), others.widened(width, gone)])
+        return found.at(np.argsort(np.concatenate([kept, which])))
 
 
 def linear_modes(matrices: CoupledMatrices, circles: Array) -> SystemModes:
@@ -103,16 +104,8 @@ def linear_modes(matrices: CoupledMatrices, circles: Array) -> SystemModes:
     Unit masses and velocities over a common frequency make the matrix as even as it can be; an eigenvalue
     moves by the rounding of its entries times its condition number [theory: whirl, eq. 15].
     """
-    root = np.linalg.cholesky(matrices.mass)
-    inverse = np.linalg.inv(root)
-    stiffness, damping = (inverse @ matrix @ inverse.T for matrix in (matrices.stiffness, matrices.damping))
-    size = root.shape[0]
-    unit = np.sqrt(np.abs(stiffness).max(axis=(1, 2)))
-    unit = np.maximum(unit, np.abs(damping).max(axis=(1, 2)) * 1e-3)[:, None, None]
-    state = np.zeros((len(stiffness), 2 * size, 2 * size))
-    state[:, :size, size:] = np.eye(size) * unit
-    state[:, size:, :size] = -stiffness / unit
-    state[:, size:, size:] = -damping
+    inverse, state = _state(matrices)
+    size = len(inverse)
     values, right = np.linalg.eig(state)
     left = np.linalg.pinv(right)
     condition = np.linalg.norm(left, axis=2) * np.linalg.norm(right, axis=1)
@@ -124,6 +117,25 @@ def linear_modes(matrices: CoupledMatrices, circles: Array) -> SystemModes:
     )
     found = np.ones(values.shape, dtype=bool)
     return SystemModes(values, sense_of(along, against), rounding, found, np.ones(len(values), dtype=bool))
+
+
+def linear_roots(matrices: CoupledMatrices) -> Complex:
+    """lambda of `linear_modes` alone, 1/s, shape (n, 2 N)."""
+    return np.asarray(np.linalg.eigvals(_state(matrices)[1]), dtype=complex)
+
+
+def _state(matrices: CoupledMatrices) -> tuple[Array, Array]:
+    """What makes the masses units, shape (N, N), and the matrix of the first order, shape (n, 2 N, 2 N)."""
+    inverse = np.linalg.inv(np.linalg.cholesky(matrices.mass))
+    stiffness, damping = (inverse @ matrix @ inverse.T for matrix in (matrices.stiffness, matrices.damping))
+    size = len(inverse)
+    unit = np.sqrt(np.abs(stiffness).max(axis=(1, 2)))
+    unit = np.maximum(unit, np.abs(damping).max(axis=(1, 2)) * 1e-3)[:, None, None]
+    state = np.zeros((len(stiffness), 2 * size, 2 * size))
+    state[:, :size, size:] = np.eye(size) * unit
+    state[:, size:, :size] = -stiffness / unit
+    state[:, size:, size:] = -damping
+    return inverse, state
 
 
 def joined(parts: Sequence[SystemModes]) -> SystemModes:

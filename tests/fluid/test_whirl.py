@@ -167,7 +167,7 @@ def test_laws() -> None:
 
 
 @kills("fluid.whirl:layer_rate", "layer.lids * plate_rate", "2.0 * layer.lids * plate_rate")
-@kills("fluid.whirl:plate_terms", "first * along + second * against", "second * along + first * against")
+@kills("fluid.whirl:_plates", "first * along + second * against", "second * along + first * against")
 @kills("fluid.whirl:steady_rate", "-slower_slip", "slower_slip")
 def test_decay_is_that_of_the_modes() -> None:
     """Waves of a ring by elements with the Coriolis force on floor and lid, to first order in friction."""
@@ -193,9 +193,9 @@ def test_decay_is_that_of_the_modes() -> None:
                 assert steady.real == pytest.approx(k, rel=1e-12)
 
 
-@kills("fluid.whirl:plate_terms", "0.5 * (1.0 - t), 0.5 * (1.0 + t)", "0.5 * (1.0 - t), 0.5")
-@kills("fluid.whirl:plate_terms", "first * along + second * against", "second * along + first * against")
-@kills("fluid.whirl:plate_terms", "np.sqrt(1j * (s + twice))", "np.sqrt(1j * s)")
+@kills("fluid.whirl:_plates", "0.5 * (1.0 - t), 0.5 * (1.0 + t)", "0.5 * (1.0 - t), 0.5")
+@kills("fluid.whirl:_plates", "first * along + second * against", "second * along + first * against")
+@kills("fluid.whirl:_plates", "np.sqrt(1j * (s + twice))", "np.sqrt(1j * s)")
 def test_floor_and_lid() -> None:
     """Offset with a drag of its own on each circle of the flow, against the equations of motion."""
     lids, momentum = 0.7, slice(0, 2 * POINTS)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from leblanc.core.files import path_text
 from leblanc.core.terminal import say
 from meshes.errors import InputError
 
@@ -51,7 +52,7 @@ def load(path: Path, changes: Sequence[str] = ()) -> Scene:
 
 def _change(text: str) -> tuple[str, Any]:
     """Path and value of "PATH=VALUE"; the value as TOML where it is one, else a text."""
-    path, sign, value = text.partition("=")
+    path, sign, value = path_text(text).partition("=")
     if not sign or not path.strip():
         raise InputError("--set", text, "PATH=VALUE, such as rotor.unbalance='120 g mm'")
     try:

@@ -78,6 +78,7 @@ from solvers.synchronous.response import (
 )
 from solvers.whirl.edges import bands_not_known, unstable_bands
 from solvers.whirl.growth import asynchronous_growth
+from solvers.whirl.laminar import Met
 
 _DIAGRAM = 121  # speeds of a Campbell diagram
 
@@ -95,11 +96,12 @@ _COORDINATES = {
 def self_excited(machine: Prepared) -> SelfExcited:
     """Growth of small whirls of a machine at its speeds [theory: whirl, eq. 7]."""
     scene, speed = machine.scene, machine.speed
-    growth, whirl_speed = asynchronous_growth(machine.rotor, scene.fills, speed, machine.waves)
+    met = Met()
+    growth, whirl_speed = asynchronous_growth(machine.rotor, scene.fills, speed, machine.waves, met)
     bands: tuple[tuple[float, float], ...] = ()
     if speed[-1] > speed[0]:
         filled, known = [scene.fills], growth[None]
-        bands = unstable_bands(machine.rotor, filled, speed, machine.waves, known)[0]
+        bands = unstable_bands(machine.rotor, filled, speed, machine.waves, known, [met])[0]
     elif growth[0] > 0.0:
         bands = ((float(speed[0]), float(speed[0])),)
     return SelfExcited(growth, whirl_speed, bands, machine.drag, bands_not_known(speed, growth))
@@ -122,7 +124,7 @@ def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion
         branch_backward=found.branch_backward,
         chamber_forward=_at_chambers(system, scene.fills, found),
         modes=rest_modes(system),
-        campbell=campbell(system, np.linspace(0.0, scene.speeds.stop, _DIAGRAM)),
+        campbell=later(campbell, system, np.linspace(0.0, scene.speeds.stop, _DIAGRAM)),
         critical_speeds_dry=_directed(system, dry, dry_shape),
         critical_speeds_wet=_directed(system, wet, wet_shape),
         zero="unbalance" if isinstance(scene.rotor, TubRotor) else "angle 0 of the unbalances",
@@ -185,7 +187,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         gravity, rotor = machine.axial_gravity, machine.rotor
         answer = response(rotor, scene.fills, machine.speed, gravity, liquid_models(choice))
         dry = rotor.natural_frequency
-        wet = critical_speed(rotor, scene.fills, gravity, synchronous_model(choice.model))
+        wet = later(critical_speed, rotor, scene.fills, gravity, synchronous_model(choice.model))
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
     update(what="peaks between the speeds")
@@ -246,7 +248,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         closed_forms=later(closed_forms, machine, answer),
         critical_speed_dry=dry,
         critical_speed_wet=wet,
-        motion=motion,
+        motion=None if motion is None else later(_with_diagram, motion),
         whirl=whirl,
         error_estimate=choice.error,
         models=model_spans(choice, machine.speed) if scene.fills else (),
@@ -259,6 +261,12 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         balance_quality=later(_balance, machine, answer.speed, answer.coordinates),
         balance_quality_dry=later(_balance, machine, answer.speed),
     )
+
+
+def _with_diagram(motion: Any) -> Motion:
+    """A motion with its Campbell diagram, which few read."""
+    found: Motion = replace(motion, campbell=motion.campbell())
+    return found
 
 
 _Said = tuple[Prepared, Choice, Response, Response, Motion | None, SelfExcited, Held | None]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from leblanc.core.answer import Answer
 from leblanc.core.blocks import Block, Notes, Picture, Table, Words
+from leblanc.core.files import path_text
 from leblanc.core.netcdf import NamedArrays
 from leblanc.core.notes import one_line
 from leblanc.core.quantities import plain, quantities
@@ -206,7 +207,7 @@ class SweepAnswer(Answer):
             *self._shares(),
             *(Words(f"emulator of {name.replace('_', ' ')}: {one.words()}") for name, one in emulators),
             Notes(counts),
-            Words(f"The data are in {self.store}"),
+            Words(f"The data are in {path_text(self.store)}"),
         )
 
     def _facts(self) -> list[tuple[str, str]]:

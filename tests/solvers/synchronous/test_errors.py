@@ -112,12 +112,16 @@ def test_upright_surface() -> None:
 )
 @kills("solvers.statics.law_defect:_moved_moment", "np.abs(missing) * (1.0 + eps)", "missing * (1.0 - eps)")
 @kills(
-    "solvers.statics.law_defect:_air",
-    "np.pi * np.square(wall) * eps[rows] - moment[count:]",
+    "solvers.statics.law_defect:_Walls.air",
+    "np.pi * np.square(self.wall[count:]) * self.eps[count:] - moment[count:]",
     "-moment[count:]",
 )
-@kills("solvers.statics.law_defect:_under", "b * (s * area[rows] - low", "b * (s * area[rows] + low")
-@kills("solvers.statics.law_defect:_under", "b * (s * x[rows] - low", "b * (s * x[rows] + low")
+@kills(
+    "solvers.statics.law_defect:_Walls._under", "b * (s * volume[rows] - low", "b * (s * volume[rows] + low"
+)
+@kills(
+    "solvers.statics.law_defect:_Walls._under", "b * (s * moment[rows] - low", "b * (s * moment[rows] + low"
+)
 @kills("solvers.statics.law_defect:_moved_moment", "floor + np.divide(missing", "floor - np.divide(missing")
 def test_law_bound() -> None:
     """The bound is never below what the law lacks, and close to it where little is lacking.

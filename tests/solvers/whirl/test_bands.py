@@ -285,7 +285,7 @@ def test_modes_at_a_second_speed_are_those_found_there() -> None:
 
 
 @kills("solvers.whirl.edges:_zero", "speed[own] * ratio", "speed[own] / ratio")
-@kills("solvers.whirl.edges:_zero", "met[:, 1] == 0.0, np.nan", "met[:, 1] == 0.0, 0.0")
+@kills("solvers.whirl.edges:_zero", "seen[:, 1] == 0.0, np.nan", "seen[:, 1] == 0.0, 0.0")
 @kills("solvers.whirl.edges:_zero", "(growth < 0.0).any", "(growth > 0.0).any")
 def test_the_speed_of_no_growth_by_interpolation() -> None:
     """Exact where the speed is a cubic of the growth, whatever rounding made zero; not beyond the points."""
@@ -304,7 +304,7 @@ def test_an_edge_takes_few_calls(monkeypatch: pytest.MonkeyPatch, hidden: float)
     """Six, also where rounding makes growth zero up to a speed beyond the edge; in quarters seventeen."""
     calls: list[int] = []
 
-    def growth(_: Any, __: Any, ___: Any, speed: np.ndarray, ____: Any) -> tuple[np.ndarray, np.ndarray]:
+    def growth(_: Any, __: Any, ___: Any, speed: np.ndarray, *____: Any) -> tuple[np.ndarray, np.ndarray]:
         calls.append(speed.size)
         rate = np.sin(0.3 * (speed - 97.0)) + 0.02 * (speed - 97.0) ** 2
         return np.where(np.abs(rate) <= hidden, 0.0, rate), speed
@@ -313,7 +313,7 @@ def test_an_edge_takes_few_calls(monkeypatch: pytest.MonkeyPatch, hidden: float)
     ends = np.array([[95.0], [98.0]])
     low, high = (np.stack([end, growth(None, [], None, end, None)[0]]) for end in ends)
     calls.clear()
-    found = _refine(Jeffcott(1.0, 1.0, 0.0, 0.0), [], np.zeros(1, dtype=np.intp), low, high, NO_FRICTION)
+    found = _refine(Jeffcott(1.0, 1.0, 0.0, 0.0), [], np.zeros(1, dtype=np.intp), low, high, NO_FRICTION, [])
     assert found[0] == pytest.approx(97.0 + hidden / 0.3, rel=1e-10)
     assert len(calls) <= 6
 

@@ -157,15 +157,15 @@ def test_what_is_near_a_mode_does_not_hide_it() -> None:
     np.testing.assert_array_equal(found, 2.0)
 
 
-@kills("solvers.whirl.laminar:_certain", "~modes.complete", "~(modes.complete | True)")
+@kills("solvers.whirl.laminar:_followed", "~modes.complete", "~(modes.complete | True)")
 def test_those_that_grow_most_serve_at_many_speeds(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside known speeds few modes are followed, and all of them where the count misses one."""
     followed: list[int] = []
     aberth = laminar._aberth
 
-    def watched(*given: Any) -> Any:
+    def watched(*given: Any, **more: Any) -> Any:
         followed.extend(int(flags.sum()) for flags in given[3:])
-        return aberth(*given)
+        return aberth(*given, **more)
 
     monkeypatch.setattr(laminar, "_aberth", watched)
     for kind in ("two_plane", "tub"):
@@ -181,6 +181,42 @@ def test_those_that_grow_most_serve_at_many_speeds(monkeypatch: pytest.MonkeyPat
         assert 0 < followed[0] < 6 * speed.size and followed[-1] == 0
         monkeypatch.undo()
         monkeypatch.setattr(laminar, "_aberth", watched)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@kills("solvers.whirl.laminar:Met.near", "+ self.slope[at]", "+ 1e3 * self.slope[at]")
+def test_what_is_known_is_where_others_start(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At other speeds the modes found alone are among those led to, which takes fewer points."""
+    rng = np.random.default_rng(11)
+    asked, points, eliminate = [0], [0, 0], laminar._eliminate
+
+    def counted(problem: Any, root: Any, spin: Any, slopes: bool = True) -> Any:
+        asked[0] += root.size * slopes
+        return eliminate(problem, root, spin, slopes)
+
+    for _ in range(4):
+        scene = scene_from_table(KINDS[kind](rng))
+        system = dry_rotor(scene).system()
+        found = [(fill.chamber.plane, plane_layer(fill, STOKES)) for fill in scene.fills]
+        layers = [(plane, layer) for plane, layer in found if layer is not None]
+        speed = np.geomspace(scene.speeds.start, scene.speeds.stop, 90)
+        between = np.sqrt(speed[1:] * speed[:-1])[::9]
+        met, taken = laminar.Met(), []
+        first = laminar.laminar_modes(system, layers, speed, met=met)
+        laminar.laminar_modes(system, layers, speed * (1.0 + 1e-6), near=first, met=met)
+        with monkeypatch.context() as patch:
+            patch.setattr(laminar, "_eliminate", counted)
+            for k, known in enumerate((met, None)):
+                asked[0] = 0
+                taken.append(laminar.laminar_modes(system, layers, between, met=known))
+                points[k] += asked[0]
+        led, alone = taken
+        assert led.complete.all() and alone.complete.all()
+        for k, spin in enumerate(between):
+            one, other = led.root[k][led.found[k]], alone.root[k][alone.found[k]]
+            assert np.abs(one[:, None] - other).min(axis=0).max() < 1e-6 * spin
+            assert one.real.max() == pytest.approx(other.real.max(), abs=1e-9 * spin)
+    assert points[0] < 0.85 * points[1]
 
 
 @kills("solvers.whirl.laminar:_all_counted", "~modes.complete", "~(modes.complete | True)")
@@ -201,3 +237,10 @@ def test_a_search_that_fails_is_seen_and_repeated(monkeypatch: pytest.MonkeyPatc
     assert np.isnan(lost).any()
     known = ~np.isnan(lost)
     np.testing.assert_allclose(lost[known], whole[known], rtol=1e-9, atol=1e-10)
+    # Where no speed is known whole, there is nothing that others could start from.
+    monkeypatch.setattr(laminar, "_starts", lambda *given: starts(*given)[:, :4])
+    met, rotor = laminar.Met(), rotor.system()
+    layers = [(fill.chamber.plane, plane_layer(fill, STOKES)) for fill in scene.fills]
+    first = laminar.laminar_modes(rotor, layers, speed, met=met)
+    assert met.speed.size == 0
+    laminar.laminar_modes(rotor, layers, speed * (1.0 + 1e-6), near=first, met=met)

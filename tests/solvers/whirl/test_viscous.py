@@ -140,8 +140,8 @@ def weakly(depth: float, viscosity: float) -> tuple[Fill, Layer]:
     return fill, layer
 
 
-@kills("fluid.whirl:plate_terms", "first * along + second * against", "second * along + first * against")
-@kills("fluid.whirl:plate_terms", "slip, dtype=complex), np.asarray(layer_tanh)", "slip, dtype=complex), 0.0")
+@kills("fluid.whirl:_plates", "first * along + second * against", "second * along + first * against")
+@kills("fluid.whirl:_plates", "slip, dtype=complex), np.asarray(layer_tanh)", "slip, dtype=complex), 0.0")
 @kills("fluid.whirl:wall_share", "(1.0 + layer_tanh) / layer_tanh", "1.0 / layer_tanh")
 @pytest.mark.parametrize("depth", [0.1, 0.3, 0.5])
 def test_weak_friction_takes_its_heat_from_the_whirl(depth: float) -> None:
