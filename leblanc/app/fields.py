@@ -148,7 +148,15 @@ def _fields(
         for k, mark in enumerate(marks):
             label = f"{_words(name)} {mark}"
             yield _field(
-                inner, field, label, value[k], typed[k], (*keys, k), scene.assumed, anchors, allowed=inner.allowed
+                inner,
+                field,
+                label,
+                value[k],
+                typed[k],
+                (*keys, k),
+                scene.assumed,
+                anchors,
+                allowed=inner.allowed,
             )
         return
     yield _field(rule, field, _words(name), value, typed, keys, scene.assumed, anchors, allowed_at(field))
@@ -166,7 +174,8 @@ def _field(
     allowed: str,
 ) -> FormField:
     path = field_path(keys)
-    kind, unit, slider, choices = "text", "", None, ()
+    kind, unit, slider = "text", "", None
+    choices: tuple[str, ...] = ()
     usual = "" if value is None or typed is not None else _said(value, getattr(rule, "dimension", None))
     number = value if isinstance(value, int | float) and not isinstance(value, bool) else None
     if isinstance(rule, Quantity):
@@ -259,8 +268,8 @@ def text_of(typed: Any) -> str:
     if isinstance(typed, dict):
         inline = tomlkit.inline_table()
         inline.update(typed)
-        return inline.as_string()
-    return tomlkit.item(typed).as_string()
+        return str(inline.as_string())
+    return str(tomlkit.item(typed).as_string())
 
 
 def value_of(text: str, rule: Any, unit: str) -> Any:

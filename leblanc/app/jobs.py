@@ -40,7 +40,9 @@ class Work:
 
 WORKS = {
     "runup": Work("Run-up", ("runup",), ("--json", "--out", "{out}/result")),
-    "map": Work("Stability map", ("map",), ("--json", "--out", "{out}/result", "--volumes", "41", "--speeds", "81")),
+    "map": Work(
+        "Stability map", ("map",), ("--json", "--out", "{out}/result", "--volumes", "41", "--speeds", "81")
+    ),
     "best": Work("Best volume", ("optimise",), ("--json", "--out", "{out}/result")),
     "report": Work("Report", ("run",), ("--json", "--out", "{out}/result"), "result/summary.html"),
     "film": Work("Film", ("view",), ("--json", "--animate", "{out}/film.gif"), "film.gif"),
@@ -198,9 +200,7 @@ def drawn(kind: str, answer: dict[str, Any]) -> dict[str, Any]:
         found = {name: answer[name][::step] for name in ("time", "speed", "amplitude")}
         return found | {"peak": answer["peak"], "notes": answer["notes"]}
     if kind == "map":
-        names = ("speed", "volume", "growth", "scene_volume", "critical_speed_dry", "notes")
-        return {name: answer[name] for name in names}
+        return {name: answer[name] for name in ("speed", "volume", "growth", "scene_volume", "notes")}
     if kind == "best":
-        names = ("volume", "meaning", "vibration", "vibration_baseline", "feasible", "notes", "objective")
-        return {name: answer.get(name) for name in names}
+        return {name: answer.get(name) for name in ("volume", "meaning", "vibration", "vibration_baseline")}
     return {}

@@ -110,7 +110,14 @@ def curve_of(answer: Answer) -> dict[str, Any] | None:
 
 def words_of(answer: Answer) -> dict[str, Any]:
     """Headline, cautions and tables of an answer."""
-    found: dict[str, Any] = {"headline": "", "about": "", "error": "", "cautions": [], "notes": [], "tables": []}
+    found: dict[str, Any] = {
+        "headline": "",
+        "about": "",
+        "error": "",
+        "cautions": [],
+        "notes": [],
+        "tables": [],
+    }
     for block in flat(answer.blocks(), "page"):
         if isinstance(block, Headline) and not found["headline"]:
             found |= {"headline": block.text, "about": block.about, "error": block.error}
@@ -120,7 +127,9 @@ def words_of(answer: Answer) -> dict[str, Any]:
         elif isinstance(block, Notes):
             found["notes"] += [text for text in block.texts if text]
         elif isinstance(block, Table) and block.rows:
-            rows = [[cell.text if isinstance(cell, Cell) else str(cell) for cell in row] for row in block.rows]
+            rows = [
+                [cell.text if isinstance(cell, Cell) else str(cell) for cell in row] for row in block.rows
+            ]
             found["tables"].append({"title": block.title, "head": list(block.head), "rows": rows})
     return found
 

@@ -59,7 +59,7 @@ class Machine:
         return self._tried(path, lambda: self._varied(path, typed))
 
     def edit(self, path: str, typed: str) -> bool:
-        """Take a value as one step of undo, an empty text for what the file need not say; False if refused."""
+        """Take a value as one step of undo; an empty text takes it out of the file. False if refused."""
 
         def changed() -> Scene:
             scene = self._varied(path, typed)
@@ -194,5 +194,3 @@ def _take_out(document: TOMLDocument, keys: Keys) -> None:
     marks = document.get("assumed")
     if marks is not None and path in marks:
         marks.remove(path)
-
-

@@ -10,7 +10,7 @@ from typing import Any
 
 from leblanc.app.jobs import WORKS
 from leblanc.app.state import State
-from leblanc.view.files import listen, require_trame, server_named
+from leblanc.view.files import listen, server_named
 from meshes.errors import InputError
 
 STATIC = Path(__file__).with_name("static")
@@ -89,7 +89,7 @@ def _page(server: Any, state: State) -> None:
         with html.Header(classes="lb-head"):
             html.H1("{{ form.name }}")
             compared = "!compared.frozen.length && !compared.measured"
-            with html.Div(classes="lb-tools", role="toolbar", aria_label="Machine"):
+            with html.Div(classes="lb-tools", role="toolbar"):
                 button("Undo", id="undo", click="trigger('undo')", disabled=("!form.undo",))
                 button("Redo", id="redo", click="trigger('redo')", disabled=("!form.redo",))
                 button("Freeze curve", id="freeze", click="trigger('freeze')")
@@ -110,24 +110,27 @@ def _page(server: Any, state: State) -> None:
             icon=False,
             role="alert",
         )
-        html.Div(id="gone", role="alert", hidden=True, classes="lb-gone")
-        with html.Div(classes="lb-jobs", id="jobs"):
-            with html.Div(v_for="job in jobs", key=("job.kind",), classes="lb-job", id=("'job-' + job.kind",)):
-                html.B("{{ job.title }}")
-                html.Span("{{ job.words }}", classes="lb-job-words")
-                vuetify3.VProgressLinear(
-                    v_if="job.state === 'runs'",
-                    model_value=("job.done || 0",),
-                    indeterminate=("job.done === null",),
-                    aria_label=("job.title",),
-                )
-                runs = "job.state === 'runs'"
-                button("Cancel", click="trigger('cancel', [job.kind])", v_if=runs, classes="lb-cancel")
-                button("Close", click="trigger('dismiss', [job.kind])", v_else=True, classes="lb-dismiss")
-                html.Div(classes="lb-result")
         with html.Div(classes="lb-page"):
-            html.Section(id="form", classes="lb-form", aria_label="Machine")
+            html.Section(id="form", classes="lb-form")
             with html.Section(classes="lb-middle", aria_label="Answer"):
                 html.Div(id="chart", classes="lb-chart")
                 html.Div(id="section", classes="lb-section")
+                with (
+                    html.Div(classes="lb-jobs", id="jobs"),
+                    html.Div(
+                        v_for="job in jobs", key=("job.kind",), classes="lb-job", id=("'job-' + job.kind",)
+                    ),
+                ):
+                    html.B("{{ job.title }}")
+                    html.Span("{{ job.words }}", classes="lb-job-words")
+                    vuetify3.VProgressLinear(
+                        v_if="job.state === 'runs'",
+                        model_value=("job.done || 0",),
+                        indeterminate=("job.done === null",),
+                        aria_label=("job.title",),
+                    )
+                    runs = "job.state === 'runs'"
+                    button("Cancel", click="trigger('cancel', [job.kind])", v_if=runs, classes="lb-cancel")
+                    button("Close", click="trigger('dismiss', [job.kind])", v_else=True, classes="lb-dismiss")
+                    html.Div(classes="lb-result")
             html.Section(id="words", classes="lb-words", aria_label="Numbers")

@@ -69,11 +69,10 @@ class State:
     def edit(self, path: str, typed: str, mark: str = "") -> None:
         """A value is typed, or a slider let go."""
         with self._lock:
-            went = self.machine.edit(path, typed)
+            self.machine.edit(path, typed)
             self._tell_of_form()
             self._tell_of_faults()
-            if went:
-                self._live.ask(self.machine.scene, mark)
+            self._live.ask(self.machine.scene, mark)  # where it is refused that before the slider was drawn
 
     def undo(self) -> None:
         """One step back."""

@@ -45,7 +45,8 @@ GROUPS = {
 _ELSEWHERE = ("validate", "trade", "notebooks")
 NAMES = tuple(name for names in GROUPS.values() for name in names if name not in _ELSEWHERE)
 MODULES = {
-    each.__name__.rpartition(".")[2].replace("_", "-"): each for each in (app, diff, new, report_bug, schema, view)
+    each.__name__.rpartition(".")[2].replace("_", "-"): each
+    for each in (app, diff, new, report_bug, schema, view)
 }
 ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well
 

@@ -25,7 +25,7 @@ import numpy as np
 from leblanc.core.files import writing
 from leblanc.core.interrupts import given_back
 from leblanc.plotting.bodies import DrawnLiquid, MachineMotion, Scale
-from leblanc.view.access import address_of, gate
+from leblanc.view.access import address_of, gate, launched
 from leblanc.view.camera import VIEWS, layout
 from leblanc.view.parts import Picture
 from leblanc.view.picture import (
@@ -228,6 +228,7 @@ async def listen(server: Any, host: str, port: int, ready: Callable[[str], None]
     @server.controller.add("on_server_bind")  # type: ignore[untyped-decorator]
     def _bound(wslink: Any) -> None:
         wslink.app.middlewares.append(gate(host, token))
+        wslink.app.router.add_post("/paraview/", launched)  # or the page complains that there is no launcher
 
     @server.controller.add("on_server_ready")  # type: ignore[untyped-decorator]
     def _ready(**_: object) -> None:

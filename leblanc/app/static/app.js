@@ -68,7 +68,7 @@
     }
     row.box.addEventListener("change", () => {
       const text = field.kind === "flag" ? String(row.box.checked) : row.box.value;
-      if (field.kind === "flag" || text !== row.field.text) send("edit", row.field, text);
+      if (text !== row.field.text || row.div.classList.contains("wrong")) send("edit", row.field, text);
     });
     const label = element("label", { htmlFor: id, title: about }, field.label);
     if (field.assumed) label.append(element("span", { className: "assumed", title: "no source gives this value" }, "assumed"));
@@ -242,7 +242,8 @@
   }
 
   function draw() {
-    const svg = at("chart").querySelector("svg");
+    const svg = at("chart") && at("chart").querySelector("svg");
+    if (!svg) return;
     if (!curve) { svg.innerHTML = ""; at("section").innerHTML = ""; return; }
     const { width, height, left, right, top, bottom } = room();
     let [low, high] = span();
@@ -266,7 +267,9 @@
       const x = X(rpm / RPM);
       text += `<line x1="${x}" y1="${top}" x2="${x}" y2="${floor}" stroke="#e2e2e2"/><text x="${x}" y="${floor + 15}" text-anchor="middle">${four(rpm)}</text>`;
     }
-    const levels = log ? [1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1].filter((a) => a >= least && a <= most) : ticks(0, most * 1e3, 5).map((a) => a / 1e3);
+    const decades = Array.from({ length: 12 }, (_, n) => Math.pow(10, n - 10));
+    const wide = most / least > 300;
+    const levels = log ? decades.flatMap((a) => (wide ? [a] : [a, 2 * a, 5 * a])).filter((a) => a >= least && a <= most) : ticks(0, most * 1e3, 5).map((a) => a / 1e3);
     for (const a of levels) {
       text += `<line x1="${left}" y1="${Y(a)}" x2="${width - right}" y2="${Y(a)}" stroke="#e2e2e2"/><text x="${left - 5}" y="${Y(a) + 4}" text-anchor="end">${four(a * 1e3)}</text>`;
     }
@@ -417,7 +420,7 @@
   }
 
   function drawMap(box, r) {
-    const w = 600, h = 300, left = 60, top = 8, right = 10, bottom = 40;
+    const w = 600, h = 300, left = 60, top = 8, right = 24, bottom = 40;
     const canvas = element("canvas", { width: w, height: h, role: "img" });
     canvas.setAttribute("aria-label", "Growth rate over speed and volume");
     const pen = canvas.getContext("2d"), nx = r.speed.length, ny = r.volume.length;
@@ -469,7 +472,7 @@
       drawMap(box, r);
     } else if (kind === "best") {
       const text = (r.volume || []).map((v, k) => `chamber ${k + 1}: ${four(v * 1e6)} ml`).join(", ");
-      box.append(element("p", {}, `${r.meaning}: ${mm(r.vibration)} with ${text}; now ${mm(r.vibration_baseline)} without liquid.`));
+      box.append(element("p", {}, `${r.meaning}: ${mm(r.vibration)} with ${text}; ${mm(r.vibration_baseline)} without liquid.`));
       const use = element("button", { type: "button", id: "take-best", className: "v-btn v-btn--variant-tonal v-btn--size-small" }, "Use these volumes");
       use.style.padding = "2px 10px";
       use.style.border = "1px solid #888";
@@ -486,6 +489,7 @@
   }
 
   function save() {
+    if (form === null) return;
     const link = element("a", { href: URL.createObjectURL(new Blob([form.text], { type: "application/toml" })), download: form.file });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
@@ -505,11 +509,16 @@
 
   let lost = false;
 
+  // trame takes its whole page away where the connection is lost: what is said then stands outside it.
   function gone(is) {
     if (is === lost) return;
     lost = is;
-    at("gone").hidden = !is;
-    at("gone").textContent = is ? "The server does not answer. Save keeps the machine as it is here; start leblanc app again and open the new address." : "";
+    if (at("gone")) at("gone").remove();
+    if (!is) return;
+    const button = element("button", { type: "button" }, "Save the machine");
+    button.addEventListener("click", save);
+    const text = "The server does not answer: start leblanc app again and open its new address. ";
+    document.body.append(element("div", { id: "gone", className: "lb-gone", role: "alert" }, text, button));
   }
 
   async function beat() {
