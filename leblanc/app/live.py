@@ -1,9 +1,15 @@
-"""Answers of a machine while it changes: the newest wins, older requests are dropped."""
+"""Answers of a machine while it changes: the newest wins, older requests are dropped.
+
+Words and tables take longer than the curve (loads of a tub twice as long): a process of its own makes them
+from the answer, so that the next curve does not wait.
+"""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,11 +18,12 @@ import leblanc as lb
 from leblanc.core.answer import Answer, NotConverged
 from leblanc.core.blocks import Cell, Checks, Grade, Headline, Notes, Table, flat
 from leblanc.scene.scene import Scene
+from leblanc.studies.processes import processes
 from leblanc.studies.run.answer import RunAnswer
 from meshes.arrays import Array
 from meshes.errors import InputError
 
-IDLE = 0.25  # s without a new request until words and tables are made
+IDLE = 0.15  # s without a new request until words and tables are made
 _DIGITS = 6  # of a number that is drawn
 
 Heard = Callable[[dict[str, Any]], None]
@@ -31,6 +38,7 @@ class Live:
     def __init__(self, heard: Heard) -> None:
         self._heard = heard
         self._wanted: tuple[Scene, str] | None = None
+        self._count = 0  # of answers begun
         self._over = False
         self._news = threading.Condition()
         self._thread = threading.Thread(target=self._work, daemon=True, name="live")
@@ -50,20 +58,29 @@ class Live:
         self._thread.join()
 
     def _work(self) -> None:
-        unsaid: tuple[Answer, str] | None = None
-        while True:
-            with self._news:
-                self._news.wait_for(lambda: self._over or self._wanted is not None, unsaid and IDLE)
-                if self._over:
-                    return
-                wanted, self._wanted = self._wanted, None
-            if wanted is not None:
-                answer = self._answered(*wanted)
-                unsaid = None if answer is None else (answer, wanted[1])
-            elif unsaid is not None:
-                answer, mark = unsaid
-                unsaid = None
-                self._heard({"words": words_of(answer), "mark": mark})
+        with processes(1) as pool:
+            pool.submit(words_of)  # loads what it needs meanwhile
+            unsaid: tuple[Answer, str] | None = None
+            while True:
+                with self._news:
+                    self._news.wait_for(lambda: self._over or self._wanted is not None, unsaid and IDLE)
+                    if self._over:
+                        return
+                    wanted, self._wanted = self._wanted, None
+                if wanted is not None:
+                    self._count += 1
+                    answer = self._answered(*wanted)
+                    unsaid = None if answer is None else (answer, wanted[1])
+                elif unsaid is not None:
+                    (answer, mark), unsaid = unsaid, None
+                    said = pool.submit(words_of, answer)
+                    said.add_done_callback(partial(self._said, self._count, mark))
+
+    def _said(self, count: int, mark: str, said: Future[dict[str, Any]]) -> None:
+        """Hear the words of an answer unless there is a newer one."""
+        if said.cancelled() or said.exception() is not None or count != self._count or self._over:
+            return
+        self._heard({"words": said.result(), "mark": mark})
 
     def _answered(self, scene: Scene, mark: str) -> Answer | None:
         try:
@@ -108,8 +125,8 @@ def curve_of(answer: Answer) -> dict[str, Any] | None:
     }
 
 
-def words_of(answer: Answer) -> dict[str, Any]:
-    """Headline, cautions and tables of an answer."""
+def words_of(answer: Answer | None = None) -> dict[str, Any]:
+    """Headline, cautions and tables of an answer; empty ones without."""
     found: dict[str, Any] = {
         "headline": "",
         "about": "",
@@ -118,7 +135,7 @@ def words_of(answer: Answer) -> dict[str, Any]:
         "notes": [],
         "tables": [],
     }
-    for block in flat(answer.blocks(), "page"):
+    for block in () if answer is None else flat(answer.blocks(), "page"):
         if isinstance(block, Headline) and not found["headline"]:
             found |= {"headline": block.text, "about": block.about, "error": block.error}
         elif isinstance(block, Checks):

@@ -298,7 +298,7 @@ def test_a_telephone(tab: Browser, address: str) -> None:
     assert tab.value("document.documentElement.scrollWidth") <= TELEPHONE[0]
     # The curve stays in sight while a field far below is changed.
     assert tab.value(
-        "(() => { const all = document.querySelectorAll('#form .field'); all[all.length - 1].scrollIntoView();"
+        "(() => { const all = document.querySelectorAll('#form .field'); [...all].pop().scrollIntoView();"
         " const b = document.querySelector('#chart svg').getBoundingClientRect();"
         " return b.top >= -1 && b.bottom < innerHeight; })()"
     )
