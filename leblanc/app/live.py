@@ -1,7 +1,7 @@
 """Answers of a machine while it changes: the newest wins, older requests are dropped.
 
-Words and tables take longer than the curve (loads of a tub twice as long): a process of its own makes them
-from the answer, so that the next curve does not wait.
+Words and tables may take longer than the curve, those of a tub with its loads three times as long: a process
+of its own answers once more for them, so that the next curve does not wait.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ class Live:
 
     def _work(self) -> None:
         with processes(1) as pool:
-            pool.submit(words_of)  # loads what it needs meanwhile
-            unsaid: tuple[Answer, str] | None = None
+            pool.submit(words_at)  # loads what it needs meanwhile
+            unsaid: tuple[Scene, str] | None = None
             while True:
                 with self._news:
                     self._news.wait_for(lambda: self._over or self._wanted is not None, unsaid and IDLE)
@@ -69,28 +69,27 @@ class Live:
                     wanted, self._wanted = self._wanted, None
                 if wanted is not None:
                     self._count += 1
-                    answer = self._answered(*wanted)
-                    unsaid = None if answer is None else (answer, wanted[1])
+                    unsaid = wanted if self._answered(*wanted) else None
                 elif unsaid is not None:
-                    (answer, mark), unsaid = unsaid, None
-                    said = pool.submit(words_of, answer)
+                    (scene, mark), unsaid = unsaid, None
+                    said = pool.submit(words_at, scene)
                     said.add_done_callback(partial(self._said, self._count, mark))
 
-    def _said(self, count: int, mark: str, said: Future[dict[str, Any]]) -> None:
+    def _said(self, count: int, mark: str, said: Future[dict[str, Any] | None]) -> None:
         """Hear the words of an answer unless there is a newer one."""
         if said.cancelled() or said.exception() is not None or count != self._count or self._over:
             return
         self._heard({"words": said.result(), "mark": mark})
 
-    def _answered(self, scene: Scene, mark: str) -> Answer | None:
+    def _answered(self, scene: Scene, mark: str) -> bool:
+        """Answer a scene; False where there is no answer."""
         try:
-            answer = lb.run(scene)
-            found = curve_of(answer)
+            found = curve_of(lb.run(scene))
         except (InputError, lb.SceneError, NotConverged, ArithmeticError) as error:
             self._heard({"fault": str(error), "mark": mark})
-            return None
+            return False
         self._heard({"curve": found, "mark": mark})
-        return answer
+        return True
 
 
 def curve_of(answer: Answer) -> dict[str, Any] | None:
@@ -125,8 +124,13 @@ def curve_of(answer: Answer) -> dict[str, Any] | None:
     }
 
 
-def words_of(answer: Answer | None = None) -> dict[str, Any]:
-    """Headline, cautions and tables of an answer; empty ones without."""
+def words_at(scene: Scene | None = None) -> dict[str, Any] | None:
+    """Words of a machine's answer; None without a machine."""
+    return None if scene is None else words_of(lb.run(scene))
+
+
+def words_of(answer: Answer) -> dict[str, Any]:
+    """Headline, cautions and tables of an answer."""
     found: dict[str, Any] = {
         "headline": "",
         "about": "",
@@ -135,7 +139,7 @@ def words_of(answer: Answer | None = None) -> dict[str, Any]:
         "notes": [],
         "tables": [],
     }
-    for block in () if answer is None else flat(answer.blocks(), "page"):
+    for block in flat(answer.blocks(), "page"):
         if isinstance(block, Headline) and not found["headline"]:
             found |= {"headline": block.text, "about": block.about, "error": block.error}
         elif isinstance(block, Checks):

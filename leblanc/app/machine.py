@@ -117,19 +117,21 @@ class Machine:
 
     def _tried(self, path: str, change: Callable[[], Scene]) -> bool:
         """The scene after a change that goes well; else the fault at its path and all as before."""
+        text = self.text
         try:
             self.scene = change()
         except SceneError as error:
             self.faults = {path: "; ".join(map(_said, error.faults))}
             self._take(self.text)
             return False
-        self._table = scene_table(self.text, self.file)
+        if self.text != text:
+            self._table = scene_table(self.text, self.file)
         self.faults = {}
         return True
 
     def _varied(self, path: str, typed: str) -> Scene:
         """The scene with another value, the text left as it is."""
-        keys, table = keys_of(path), scene_table(self.text, self.file)
+        keys, table = keys_of(path), self._table
         if not typed.strip():
             document = tomlkit.parse(self.text)
             _take_out(document, keys)
@@ -142,7 +144,7 @@ class Machine:
 
     def _value(self, path: str, typed: str) -> Any:
         """What a typed text means at a path; a `SceneError` if that leads nowhere."""
-        keys, table = keys_of(path), scene_table(self.text, self.file)
+        keys, table = keys_of(path), self._table
         try:
             field, depth = require_field(Scene, table, path)
         except Refused as refused:

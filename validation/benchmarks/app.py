@@ -8,6 +8,7 @@ on the machine slows both alike. Needs a Chromium and a checkout, whose tests dr
 from __future__ import annotations
 
 import json
+import os
 import statistics
 import subprocess
 import sys
@@ -27,6 +28,7 @@ SCENES = {
     "two planes": ("two_plane_rig", "chambers.0.volume"),
 }
 WAIT = 60.0  # s for one picture
+BLOCK, REST = 10, 2.0  # moves one after another, as a slider is drawn; s between them
 MOVE = """
 new Promise((done) => {
   addEventListener('leblanc:drawn', (event) => done(event.detail.ms), { once: true });
@@ -49,23 +51,33 @@ for line in sys.stdin:
 
 
 def main(moves: int = 60, json: Path | None = None) -> Iterator[str]:
-    """Median and 95 % of so many moves each, ms, and of the answer alone."""
+    """Median and 95 % of so many moves each, ms, of the answer alone, and the server's processor time a move."""
     rows: list[dict[str, Any]] = []
     for title, (name, path) in SCENES.items():
-        with _page(name) as tab, _alone(name, path) as ask:
-            drawn, answered = [], []
-            volume = _volume(tab, path)
-            for k in range(-5, moves):  # the first five warm up
-                place = 300 + 400 * (k % 20) // 20 + (k + 5) // 20
-                seconds = float(tab.value(MOVE % (path, place))) / 1e3
-                alone = ask(volume * (0.8 + 0.4 * (k + 5) / (moves + 5)))
-                if k >= 0:
-                    drawn.append(seconds)
-                    answered.append(alone)
-        rows.append({"scene": title} | _spread("picture", drawn) | _spread("answer", answered))
+        drawn: list[float] = []
+        answered: list[float] = []
+        spent: list[float] = []
+        with _page(name) as (tab, server), _alone(name, path) as ask:
+            value = _value(tab, path)
+            for block in range(-1, -(-moves // BLOCK)):  # the first one warms up
+                before = _processor(server)
+                pictures = [float(tab.value(MOVE % (path, 300 + 20 * k + block))) / 1e3 for k in range(BLOCK)]
+                used = (_processor(server) - before) / BLOCK
+                time.sleep(REST)  # until its words are made too
+                alone = [ask(value * (0.8 + 0.02 * k + 1e-3 * block)) for k in range(BLOCK)]
+                if block >= 0:
+                    drawn, answered, spent = drawn + pictures, answered + alone, [*spent, used]
+        row = {"scene": title, "processor": statistics.median(spent)}
+        rows.append(row | _spread("picture", drawn) | _spread("answer", answered))
         yield _line(rows[-1])
     if json is not None:
         write(json, {"moves": moves, "rows": rows})
+
+
+def _processor(server: int) -> float:
+    """Processor time of a process so far, s; of Linux."""
+    parts = Path(f"/proc/{server}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    return (int(parts[11]) + int(parts[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _spread(name: str, times: list[float]) -> dict[str, float]:
@@ -78,10 +90,10 @@ def _line(row: dict[str, Any]) -> str:
         f"{name} {1e3 * row[f'{name}_median']:6.0f} ms, 95 % {1e3 * row[f'{name}_late']:6.0f} ms"
         for name in ("picture", "answer")
     )
-    return f"{row['scene']:13} {'; '.join(found)}"
+    return f"{row['scene']:13} {'; '.join(found)}; processor {1e3 * row['processor']:4.0f} ms a move"
 
 
-def _volume(tab: Any, path: str) -> float:
+def _value(tab: Any, path: str) -> float:
     """Value of the machine at a path, SI."""
     import leblanc as lb
 
@@ -92,8 +104,8 @@ def _volume(tab: Any, path: str) -> float:
 
 
 @contextmanager
-def _page(name: str) -> Iterator[Any]:
-    """The page of an example in a browser, once it shows an answer and its words."""
+def _page(name: str) -> Iterator[tuple[Any, int]]:
+    """Tab with the page of an example, once it shows its words, and the number of its server."""
     from tests.oracles.browser import browser, found  # of a checkout
 
     path = found()
@@ -110,7 +122,7 @@ def _page(name: str) -> Iterator[Any]:
             while not tab.value("!!document.querySelector('#words table')"):
                 assert time.monotonic() < until, "the page shows no answer"
                 time.sleep(0.1)
-            yield tab
+            yield tab, server.pid
     finally:
         server.terminate()
         server.wait()
