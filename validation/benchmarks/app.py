@@ -51,7 +51,7 @@ for line in sys.stdin:
 
 
 def main(moves: int = 60, json: Path | None = None) -> Iterator[str]:
-    """Median and 95 % of so many moves each, ms, of the answer alone, and the server's processor time a move."""
+    """Median and 95 % of so many moves, of the answer alone, and the server's processor time a move."""
     rows: list[dict[str, Any]] = []
     for title, (name, path) in SCENES.items():
         drawn: list[float] = []

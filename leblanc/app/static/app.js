@@ -5,7 +5,7 @@
   const STEPS = 1000; // of a slider
   const WET = "#0072b2", DRY = "#d55e00";
   // After Okabe and Ito, each with dashes of its own.
-  const FROZEN = [["#009e73", "6 3"], ["#cc79a7", "2 3"], ["#8a6d00", "10 3 2 3"], ["#56b4e9", "4 2"], ["#555555", "1 3"]];
+  const FROZEN = [["#009e73", "10 3 2 3"], ["#cc79a7", "2 3"], ["#8a6d00", "12 4"], ["#56b4e9", "4 2"], ["#555555", "1 3"]];
   const DRAWN = 0.22; // largest deflection as drawn over the wall's radius
   const BEAT = 2000; // ms between looks whether the server is there
 
@@ -218,7 +218,11 @@
     };
     svg.addEventListener("pointerdown", move);
     svg.addEventListener("pointermove", move);
-    new ResizeObserver(() => draw()).observe(at("chart"));
+    let wide = 0;
+    new ResizeObserver(() => requestAnimationFrame(() => {
+      const now = at("chart") ? at("chart").clientWidth : wide;
+      if (now !== wide) { wide = now; draw(); }
+    })).observe(at("chart"));
   }
 
   const span = () => [curve.speed[0], curve.speed[curve.speed.length - 1]];
