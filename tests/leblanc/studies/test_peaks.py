@@ -393,3 +393,13 @@ def test_resonances_that_are_one() -> None:
     apart = once * (1.0 + 1e-11)
     assert _distinct(once, apart).size == 6 and _distinct(once[:0], apart).size == 3
     assert _distinct(apart, once[:0]).size == 3
+
+
+def test_damped_beyond_a_top() -> None:
+    """With c^2 > 2 k (M + full liquid) the amplitude rises with the speed: no top, not one at no speed."""
+    scene = lb.example("washing_machine")
+    full = sum(998.2 * np.pi * c.radius**2 * c.height for c in scene.liquids)
+    damping = 1.1 * np.sqrt(2.0 * 11196.0 * (scene.rotor.machine().mass + full))
+    found = lb.run(scene.replace({"rotor.damping": float(damping)}))
+    assert np.all(np.diff(found.curve.amplitude) > 0.0)
+    assert found.peak == {"speed": found.speed[-1], "amplitude": found.amplitude[-1]}
