@@ -43,7 +43,7 @@ $(BIN)/.installed: pyproject.toml | $(BIN)/python
 	touch $@
 
 $(BIN)/.installed-test: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --editable ".[test,browser,cad,gpu]"
+	$(BIN)/python -m pip install --quiet --editable ".[test,browser,app,cad,gpu]"
 	touch $@
 
 $(BIN)/.installed-lint: pyproject.toml | $(BIN)/python
@@ -60,7 +60,7 @@ $(BIN)/.installed-docs: pyproject.toml | $(BIN)/python
 
 # All of these by one look at the packages.
 $(BIN)/.installed-all: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --editable ".[test,browser,cad,gpu,lint,notebooks,docs]"
+	$(BIN)/python -m pip install --quiet --editable ".[test,browser,app,cad,gpu,lint,notebooks,docs]"
 	touch $(BIN)/.installed $(addprefix $(BIN)/.installed,-test -lint -notebooks -docs -all)
 
 # The comparisons with measurements, prints and other codes, executed: a notebook whose claims fail stops the make.

@@ -222,6 +222,7 @@ RECIPES = (
         minutes=True,
     ),
     Recipe(("validation.cases.rotors.blood_pump",), ("blood_pump", "blood_pump_coils")),
+    Recipe(("docs/app_pictures.py",), ("app_wide", "app_telephone"), minutes=True, needs="trame_vuetify"),
     Recipe(("examples/ross_flexible_rotor.py",), ("ross_flexible_rotor",), minutes=True, needs="ross"),
 )
 

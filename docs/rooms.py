@@ -12,8 +12,9 @@ Imports = Mapping[tuple[str, str], int]
 # From the top: package, and its parts with the folders or modules of each.
 FLOORS: tuple[tuple[str, Mapping[str, tuple[str, ...]]], ...] = (
     ("validation", {"cases, notebooks, trade": ("validation",)}),
-    ("leblanc", {"commands": ("leblanc.cli", "leblanc.__main__"), "three dimensions": ("leblanc.view",)}),
-    ("leblanc", {"calls": ("leblanc",), "wings": ("leblanc.wings",)}),
+    ("leblanc", {"commands": ("leblanc.cli", "leblanc.__main__"), "sliders": ("leblanc.app",)}),
+    ("leblanc", {"calls": ("leblanc",), "three dimensions": ("leblanc.view",)}),
+    ("leblanc", {"wings": ("leblanc.wings",)}),
     (
         "leblanc",
         {

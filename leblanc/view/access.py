@@ -53,6 +53,13 @@ def gate(host: str, token: str) -> Any:
     return web.middleware(check)
 
 
+async def launched(request: Any) -> Any:
+    """Answer to the page's question where its server is: here."""
+    from aiohttp import web
+
+    return web.json_response({"sessionURL": f"ws://{request.headers.get('Host', '')}/ws"})
+
+
 def _name(host: str) -> str | None:
     """Name in a Host header, without the port; None if it is no host."""
     try:

@@ -25,7 +25,7 @@ import numpy as np
 from leblanc.core.files import writing
 from leblanc.core.interrupts import given_back
 from leblanc.plotting.bodies import DrawnLiquid, MachineMotion, Scale
-from leblanc.view.access import address_of, gate
+from leblanc.view.access import address_of, gate, launched
 from leblanc.view.camera import VIEWS, layout
 from leblanc.view.parts import Picture
 from leblanc.view.picture import (
@@ -204,22 +204,37 @@ async def _serve(
     plot: Any, name: str, frames: Frames, host: str, port: int, ready: Callable[[str], None]
 ) -> None:
     """Everything that trame ties to the loop it finds running."""
+    server = server_named(f"leblanc view {name}")
+    _page(server, plot, name, frames)
+    await listen(server, host, port, ready)
+
+
+def server_named(name: str) -> Any:
+    """Server of a page, which is not yet up."""
     from trame.app import get_server
 
     with _no_arguments():
-        server = get_server(f"leblanc view {name}", client_type="vue3")
-        _page(server, plot, name, frames)
+        return get_server(name, client_type="vue3")
 
-        token = secrets.token_urlsafe(24)
 
-        @server.controller.add("on_server_bind")  # type: ignore[untyped-decorator]
-        def _bound(wslink: Any) -> None:
-            wslink.app.middlewares.append(gate(host, token))
+async def listen(server: Any, host: str, port: int, ready: Callable[[str], None]) -> None:
+    """Let a server answer whoever has its token until it is interrupted; port 0 takes a free one.
 
-        @server.controller.add("on_server_ready")  # type: ignore[untyped-decorator]
-        def _ready(**_: object) -> None:
-            ready(address_of(host, server.port, token))
+    `ready` is called with the address, which carries the token, once the page can be opened. An OSError where
+    the address cannot be listened at.
+    """
+    token = secrets.token_urlsafe(24)
 
+    @server.controller.add("on_server_bind")  # type: ignore[untyped-decorator]
+    def _bound(wslink: Any) -> None:
+        wslink.app.middlewares.append(gate(host, token))
+        wslink.app.router.add_post("/paraview/", launched)  # or the page complains that there is no launcher
+
+    @server.controller.add("on_server_ready")  # type: ignore[untyped-decorator]
+    def _ready(**_: object) -> None:
+        ready(address_of(host, server.port, token))
+
+    with _no_arguments():
         running = server.start(
             port=port,
             host=host,

@@ -51,7 +51,10 @@ def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: Liquid
     # Wet all over, the liquid has its full mass whatever the deflection and the speed.
     known = np.isfinite(speed[rows])
     known[known] = amplitude[rows[known]] <= liquid.limit(rows[known], speed[rows[known]])
-    rows, curve = rows[~known], curve.at(~known)
+    # Too much damping for a top whatever the liquid's share in the mass: none, as above.
+    low, high = _masses(curve, full[rows])
+    sought = ~known & (low < high)
+    rows, curve = rows[sought], curve.at(sought)
     if rows.size:
         total[rows], speed[rows], amplitude[rows] = _bent(curve, liquid, rows)
     return Tops(speed, amplitude, 0.5 * damping / total)
@@ -59,12 +62,7 @@ def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: Liquid
 
 def _bent(curve: _Curve, liquid: _Liquid, rows: Index) -> tuple[Array, Array, Array]:
     """Mass, speed and deflection at the tops of machines with a wall that runs dry; nan where none is."""
-    full = liquid.added_mass[rows] * (1.0 + 1e-9)
-    # With less mass than that the deflection rises without end.
-    least = np.maximum(
-        curve.mass * (1.0 - 1e-12), 0.5 * np.square(curve.damping) / curve.stiffness * (1.0 + 1e-9)
-    )
-    most = curve.mass + full
+    least, most = _masses(curve, liquid.added_mass[rows])
     total, change = most, np.zeros(rows.size)
     for _ in range(_STEPS if np.any(liquid.gravity[rows] > 0.0) else 1):
 
@@ -83,6 +81,15 @@ def _bent(curve: _Curve, liquid: _Liquid, rows: Index) -> tuple[Array, Array, Ar
             shares = liquid.share(np.tile(rows[upright], 2), size, near.ravel()).reshape(2, -1)
             change[upright] = 0.25 * (shares[1] - shares[0]) / _NEAR
     return total, speed, deflection
+
+
+def _masses(curve: _Curve, added: Array) -> tuple[Array, Array]:
+    """Least and largest mass with the liquid's share at which a top may be; none between where they cross."""
+    # With less mass than that the deflection rises without end.
+    least = np.maximum(
+        curve.mass * (1.0 - 1e-12), 0.5 * np.square(curve.damping) / curve.stiffness * (1.0 + 1e-9)
+    )
+    return least, curve.mass + added * (1.0 + 1e-9)
 
 
 @dataclass(frozen=True)

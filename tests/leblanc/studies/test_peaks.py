@@ -408,3 +408,13 @@ def test_the_direction_of_what_the_liquid_does() -> None:
     assert change_words(1.51, 1.0) == "+51 %" and change_words(1.0, 1.0) == "no change"
     assert change_words(1.0, 0.0) == change_words(math.inf, 1.0) == change_words(1.0, math.nan) == ""
     assert effect(lb.run(lb.example("runup").replace({"chambers.0.volume": 0.0}))) == ""
+
+
+def test_damped_beyond_a_top() -> None:
+    """With c^2 > 2 k (M + full liquid) the amplitude rises with the speed: no top, not one at no speed."""
+    scene = lb.example("washing_machine")
+    full = sum(998.2 * np.pi * c.radius**2 * c.height for c in scene.liquids)
+    damping = 1.1 * np.sqrt(2.0 * 11196.0 * (scene.rotor.machine().mass + full))
+    found = lb.run(scene.replace({"rotor.damping": float(damping)}))
+    assert np.all(np.diff(found.curve.amplitude) > 0.0)
+    assert found.peak == {"speed": found.speed[-1], "amplitude": found.amplitude[-1]}
