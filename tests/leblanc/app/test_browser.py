@@ -65,6 +65,7 @@ class App:
 
     def press(self, selector: str) -> None:
         """A real click in the middle of an element."""
+        self.until(f"!!document.querySelector({json.dumps(selector)})")
         x, y = self.tab.value(
             f"(() => {{ const e = document.querySelector({selector!r});"
             " e.scrollIntoView({block: 'center'});"
