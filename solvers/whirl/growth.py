@@ -95,7 +95,8 @@ def system_modes(
     """All whirl modes of any rotor with its fills, or those that grow most [theory: whirl, eq. 7].
 
     `near`: those at speeds next to these, from which an iteration follows them; it looks for no others then.
-    `met`: what is known of the machine, where a search needs a start.
+    `met`: what is known of the machine, where a search needs a start. Of laminar layers the way round is told
+    without `every` alone.
     """
     heavy, law = rotor.system(), _waves_of(fills, friction)
     if isinstance(law, CheckedModel):

@@ -155,7 +155,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     said = json.loads(capsys.readouterr().out)
     assert said["files"] == ["chamber_1.json", "chamber_1.mat", "machine.json", "machine.mat"]
     record = json.loads((tmp_path / "contents.json").read_text())
-    assert set(record["made"]["export"]["files"]) == set(said["files"])
+    assert set(record["made"]["export statespace"]["files"]) == set(said["files"])
     assert main(["export", "examples/horizontal_rig.toml", "--to", "statespace"]) == 2
     assert "transverse gravity" in capsys.readouterr().err
 
