@@ -14,7 +14,7 @@ from meshes.errors import InputError
 
 def app(
     scene: Annotated[
-        Path | None, typer.Argument(help="Scene file (TOML) [default: the starter of `leblanc new`].")
+        Path | None, typer.Argument(help="Scene file (TOML) [default: the starter of leblanc new].")
     ] = None,
     host: Annotated[str, typer.Option(help="Address that the page is served at.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port of the page; 0 takes a free one.")] = 8080,
