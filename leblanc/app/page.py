@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from leblanc.app.jobs import WORKS
 from leblanc.app.state import State
 from leblanc.view.files import listen, server_named
-from meshes.errors import InputError
 
 STATIC = Path(__file__).with_name("static")
 SERVED = "__leblanc_app"  # where the browser finds it
@@ -30,20 +28,12 @@ EMPTY = {
 }
 
 
-def require_app() -> None:
-    """Raise an `InputError` where libraries of the page are not installed."""
-    for name in ("trame", "trame_vuetify", "tomlkit"):
-        if find_spec(name) is None:
-            raise InputError("app", f"no {name}", "asked for with the extra: pip install leblanc[app]")
-
-
 def serve(text: str, file: str, host: str, port: int, ready: Callable[[str], None]) -> None:
     """Serve the page of a machine file until interrupted; port 0 takes a free one.
 
     `ready` is called with the address, which carries a token, once the page can be opened. A `SceneError` for
     a wrong text, an OSError where the address cannot be listened at.
     """
-    require_app()
     asyncio.run(_serve(text, file, host, port, ready))
 
 

@@ -20,13 +20,15 @@ def app(
     port: Annotated[int, typer.Option(help="Port of the page; 0 takes a free one.")] = 8080,
 ) -> None:
     """Serve a page with the machine as sliders beside its live answer, until Ctrl-C."""
-    from leblanc.app.page import require_app, serve
+    from leblanc.app import require_app
     from leblanc.scene.schema.load import read_text
     from leblanc.view.access import HERE
 
     if not 0 <= port <= 65535:
         raise InputError("--port", port, "from 0 to 65535")
     require_app()
+    from leblanc.app.page import serve  # which loads what the extra brings
+
     if scene is None:
         text = resources.files("leblanc.scene").joinpath("starter.toml").read_text(encoding="utf-8")
     else:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import random
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -366,3 +368,23 @@ def test_sections_are_found_from_another_folder(tmp_path: Path) -> None:
     assert f'"{tmp_path / "walls.msh"}"' in moved
     assert "# kept" in moved
     assert jobs_module.elsewhere('name = "x"\n', "scene.toml") == 'name = "x"\n'
+
+
+def test_without_its_extra_the_command_names_it() -> None:
+    """In a process in which none of its libraries can be found, one line and no traceback."""
+    code = """if True:
+        import sys
+        class Nothing:
+            def find_spec(self, name, *_):
+                if name.partition(".")[0] in ("trame", "trame_vuetify", "tomlkit"):
+                    raise ModuleNotFoundError(name)
+        import importlib.util
+        found = importlib.util.find_spec
+        importlib.util.find_spec = lambda name, *_: None if name in ("trame", "tomlkit") else found(name)
+        sys.meta_path.insert(0, Nothing())
+        from leblanc.cli import main
+        sys.exit(main(["app", "--port", "0"]))
+    """
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
+    assert "pip install leblanc[app]" in done.stderr
