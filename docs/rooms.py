@@ -12,7 +12,7 @@ Imports = Mapping[tuple[str, str], int]
 # From the top: package, and its parts with the folders or modules of each.
 FLOORS: tuple[tuple[str, Mapping[str, tuple[str, ...]]], ...] = (
     ("validation", {"cases, notebooks, trade": ("validation",)}),
-    ("leblanc", {"commands": ("leblanc.cli", "leblanc.__main__"), "sliders": ("leblanc.app",)}),
+    ("leblanc", {"commands, sliders": ("leblanc.cli", "leblanc.__main__", "leblanc.app")}),
     ("leblanc", {"calls": ("leblanc",), "three dimensions": ("leblanc.view",)}),
     ("leblanc", {"wings": ("leblanc.wings",)}),
     (
