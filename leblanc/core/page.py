@@ -151,14 +151,18 @@ def _weight(label: str) -> int:
 def doubt(checks: Iterable[Any], error: str = "") -> str:
     """What must not be relied on in an answer, in one sentence of two clauses; the rest is in the table.
 
-    Of an answer that passes all checks its error is said.
+    Of an answer whose headline no check touches its error is said.
     """
-    failed = sorted((one for one in checks if one.grade), key=lambda one: _weight(one.label))
+    rows = list(checks)
+    failed = sorted((one for one in rows if one.grade > Grade.NOTE), key=lambda one: _weight(one.label))
+    aside = f"; estimated error {error}" if error else ""
+    if not failed and any(one.grade for one in rows):
+        return f"No limit of the models touches these figures{aside}."
     if not failed:
-        return f"No limit of the models is passed{f'; estimated error {error}' if error else ''}."
+        return f"No limit of the models is passed{aside}."
     told = "; ".join(f"{one.label[:1].lower()}{one.label[1:]}: {one.where}" for one in failed[:_CLAUSES])
     rest = len(failed) - _CLAUSES
-    return f"Caution: {told}{f' ({rest} more under the limits)' if rest > 0 else ''}."
+    return f"Caution: {told}{f' ({rest} more under the limits)' if rest > 0 else ''}{aside}."
 
 
 def _sections(blocks: Sequence[Block], figures: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -10,7 +10,7 @@ from contextlib import suppress
 from io import TextIOWrapper
 from typing import Literal, TextIO
 
-from leblanc.core.blocks import Block, Checks, Headline, Notes, Table, Words, flat
+from leblanc.core.blocks import Block, Checks, Grade, Headline, Notes, Table, Words, flat
 
 _WIDTH = 100  # characters of a line where there is no terminal
 
@@ -24,8 +24,12 @@ def show(blocks: Iterable[Block]) -> None:
             for text in block.texts:
                 print(f"note: {text}")
         elif isinstance(block, Checks):
-            print(f"\n{block.title}")
-            print_table([(one.label, one.where) for one in block.rows], indent=2)
+            touched = any(one.grade > Grade.NOTE for one in block.rows)
+            print(f"\n{block.title}{' (! touches the figures above)' if touched else ''}")
+            marks = ["!" if one.grade > Grade.NOTE else " " for one in block.rows]
+            print_table(
+                [(f"{mark} {one.label}", one.where) for mark, one in zip(marks, block.rows, strict=True)]
+            )
         elif isinstance(block, Table) and block.rows:
             if block.title:
                 print(f"\n{block.title}")

@@ -291,6 +291,24 @@ def number(value: float) -> str:
     return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
 
 
+_ALL = 0.995  # relative error that leaves nothing sure
+_SURE = 1e-4  # relative error below which four digits say all
+
+
+def measured(value: float, error: float, unit: Unit) -> str:
+    """A value with its absolute error, both SI, no digit finer than the error: "7.95 ± 0.11".
+
+    The value alone where the error is unknown, as large as itself or smaller than its fourth digit.
+    """
+    size, doubt = value * unit.count, abs(error) * unit.count
+    if not math.isfinite(size) or not _SURE * abs(size) < doubt < _ALL * abs(size):
+        return number(size)
+    places = 1 - math.floor(math.log10(doubt))  # two digits of the error
+    if places > 0:
+        return f"{size:.{places}f} ± {doubt:.{places}f}".replace("-", MINUS)
+    return f"{round(size, places):.0f} ± {round(doubt, places):.0f}".replace("-", MINUS)
+
+
 _MOST = 1e50  # in SI; powers and products of what is larger overflow, and nothing in the world is
 
 

@@ -51,6 +51,23 @@ class Peak:
 
 
 @dataclass(frozen=True)
+class Resonance:
+    """A maximum of the amplitude over speed, as standards on rotors judge it."""
+
+    speed: Annotated[float, Q("rad s-1", "speed of the maximum")]
+    #: infinite where it has no bound
+    amplitude: Annotated[float, Q("m", "amplitude of the maximum")]
+    #: infinite without a bound, nan where the curve does not fall so far on both sides
+    amplification_factor: Annotated[
+        float, Q("1", "amplification factor", "speed of the maximum over the width of its half-power band")
+    ]
+    #: nan of a machine that works at no speed
+    separation_margin: Annotated[
+        float, Q("1", "separation margin", "distance from the last speed, over that speed")
+    ]
+
+
+@dataclass(frozen=True)
 class Samples:
     """Complex amplitudes of a machine over speed; the amplitude is the sum of the sizes of their parts."""
 
@@ -75,6 +92,43 @@ def highest(speed: Array, amplitude: Array) -> Peak:
         return Peak(math.nan, math.nan)
     k = int(np.nanargmax(amplitude))
     return Peak(float(speed[k]), float(amplitude[k]))
+
+
+_FALLS = 0.9  # of a maximum, below which the amplitude falls on both sides of one that counts
+
+
+def resonances(speed: Array, amplitude: Array) -> tuple[Resonance, ...]:
+    """Maxima within a range of rising speeds, shape (n,); ripples that fall by less than a tenth are none."""
+    known = ~np.isnan(amplitude)
+    x, y = speed[known], amplitude[known]
+    if y.size < 3:
+        return ()
+    left, right = np.append(-np.inf, y[:-1]), np.append(y[1:], -np.inf)
+    tops = np.flatnonzero((y >= right) & (y > left))
+    found = []
+    for k in tops[(tops > 0) & (tops < y.size - 1)].tolist():
+        if None in (_crossing(x, y, k, side, _FALLS) for side in (-1, 1)):
+            continue
+        low, high = (_crossing(x, y, k, side, math.sqrt(0.5)) for side in (-1, 1))
+        factor = math.nan if low is None or high is None else math.inf
+        if low is not None and high is not None and high > low:
+            factor = float(x[k]) / (high - low)
+        margin = abs(float(x[k]) - float(speed[-1])) / abs(float(speed[-1])) if speed[-1] else math.nan
+        found.append(Resonance(float(x[k]), float(y[k]), factor, margin))
+    return tuple(found)
+
+
+def _crossing(x: Array, y: Array, top: int, side: int, share: float) -> float | None:
+    """Where a curve falls to a share of a maximum on one side; None where it rises above it before."""
+    if math.isinf(y[top]):
+        return float(x[top])
+    level, k = share * y[top], top + side
+    while 0 <= k < y.size and level < y[k] <= y[top]:
+        k += side
+    if not 0 <= k < y.size or y[k] > y[top]:
+        return None
+    inner = k - side
+    return float(x[inner] + (x[k] - x[inner]) * (y[inner] - level) / (y[inner] - y[k]))
 
 
 def seeds(

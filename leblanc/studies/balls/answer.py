@@ -33,7 +33,7 @@ from leblanc.studies.balls.races import GravityOnBalls, RaceOfBalls, StuckBalls,
 from leblanc.studies.closed_forms.answer import ClosedForms, closed_form_table
 from leblanc.studies.loads.answer import MachineLoads, bearing_tables, load_table
 from leblanc.studies.run.notes import plane_words
-from leblanc.studies.run.words import failing
+from leblanc.studies.run.words import failing_at
 from leblanc.studies.volume.answer import WallVolumes
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.quantity import Q
@@ -493,7 +493,10 @@ def checks(result: BallsAnswer) -> list[Check]:
             ("Gravity outweighs the spin", ~result.in_range),
             (f"Balls swing by more than {number(math.degrees(FAR))} deg", far & result.in_range),
         ]
-    return [failing(label, result.speed, mask) for label, mask in found]
+    at = [float(result.speed[-1])]
+    if np.isfinite(result.amplitude).any():
+        at.append(float(result.speed[np.nanargmax(result.amplitude)]))
+    return [failing_at(at, label, result.speed, mask) for label, mask in found]
 
 
 def alt(result: BallsAnswer) -> str:

@@ -369,7 +369,7 @@ def mode_rows(modes: tuple[RestMode, ...]) -> Rows:
     return [
         (
             f"{number(mode.frequency * RPM / _HZ)} Hz",
-            f"{in_rpm(mode.frequency)}, damping ratio {mode.damping_ratio:.3g}, mostly a {mode.moves}",
+            f"{in_rpm(mode.frequency)}, damping ratio {mode.damping_ratio:.3g}: {mode.moves}",
         )
         for mode in modes
     ]

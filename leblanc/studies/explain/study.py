@@ -258,7 +258,9 @@ def _bare(machine: Prepared, model: str) -> _Bare:
     gravity = machine.axial_gravity
     if axis_is_free(system):
         nothing = math.nan
-        return _Bare(moving_mass(rotor), nothing, nothing, nothing, rest_modes(system))
+        return _Bare(
+            moving_mass(rotor), nothing, nothing, nothing, rest_modes(system, machine.scene.rotor.axis)
+        )
     if isinstance(rotor, Jeffcott):
         wet = critical_speed(rotor, fills, gravity, synchronous_model(model))
         return _Bare(moving_mass(rotor), rotor.natural_frequency, wet, rotor.damping_ratio)
@@ -267,4 +269,4 @@ def _bare(machine: Prepared, model: str) -> _Bare:
     turning = modes(system, dry if np.isfinite(dry) else 0.0)
     nearest = int(np.argmin(np.abs(turning.frequency[0] - dry))) if np.isfinite(dry) else 0
     ratio = float(turning.damping_ratio[0, nearest])
-    return _Bare(moving_mass(rotor), dry, wet, ratio, rest_modes(system))
+    return _Bare(moving_mass(rotor), dry, wet, ratio, rest_modes(system, machine.scene.rotor.axis))

@@ -28,7 +28,7 @@ from leblanc.studies.volume.answer import WallVolumes
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from meshes.quantity import Q
-from solvers.synchronous.peaks import Peak, highest
+from solvers.synchronous.peaks import Peak, Resonance, highest, resonances
 from solvers.synchronous.response import LAG, Response, by_speed
 
 _CIRCLE = 1e-9  # of the deflection, that the part against the spin may have in a circle
@@ -204,6 +204,18 @@ class RunAnswer(Answer):
         return highest(self.curve.speed, self.curve.amplitude_dry)
 
     @property
+    def resonances(
+        self,
+    ) -> Annotated[tuple[Resonance, ...], Q(text="maxima of the curve, by rising speed", rows="resonance")]:
+        return resonances(self.curve.speed, self.curve.amplitude)
+
+    @property
+    def resonances_dry(
+        self,
+    ) -> Annotated[tuple[Resonance, ...], Q(text="the same without liquid", rows="resonance_dry")]:
+        return resonances(self.curve.speed, self.curve.amplitude_dry)
+
+    @property
     def phase(self) -> Annotated[Array, Q("rad", "phase of the deflection", LAG, _OVER)]:
         return phase(self.response.deflection)
 
@@ -306,6 +318,7 @@ class RunAnswer(Answer):
         head, rows = words.comparison_table(self)
         aside: tuple[Block, ...] = (
             Table(rows, head, shown="page"),
+            words.resonance_table(self),
             Table(words.facts(self), shown="page"),
             Checks(words.checks(self)),
         )
@@ -313,7 +326,7 @@ class RunAnswer(Answer):
         said = [note.text for note in self.notes if note.code not in elsewhere]
         pictures = tuple(self._pictures())
         return (
-            Headline(words.answer(self), words.machine(self), words.largest_error(self)),
+            Headline(words.answer(self), words.machine(self), words.headline_error(self)),
             *([Words(said_of_liquid)] if (said_of_liquid := words.effect(self)) else []),
             Table(rows, head, right=True, shown="text"),
             Words(amplitude_sentence(words.amplitude_place(self)), shown="text"),

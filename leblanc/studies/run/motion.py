@@ -27,7 +27,7 @@ class RestMode:
 
     frequency: float  #: damped, rad/s; 0 where overdamped
     damping_ratio: float  #: 1 where overdamped
-    moves: str  #: what moves most, in words
+    moves: str  #: by share of kinetic energy, in words
 
 
 @dataclass(frozen=True)
@@ -75,6 +75,12 @@ class Motion:
         self,
     ) -> Annotated[tuple[float, ...], Q("1", "damping ratio", "at rest, dry", _REST)]:
         return tuple(mode.damping_ratio for mode in self.modes)
+
+    @property
+    def natural_mode(
+        self,
+    ) -> Annotated[tuple[str, ...], Q(text="mode at rest, by share of kinetic energy", data=False)]:
+        return tuple(mode.moves for mode in self.modes)
 
 
 @dataclass(frozen=True)

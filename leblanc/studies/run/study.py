@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
@@ -83,14 +83,13 @@ from solvers.whirl.laminar import Met
 _DIAGRAM = 121  # speeds of a Campbell diagram
 
 # What each coordinate of the rotors means, in words.
-_COORDINATES = {
-    "x": "shift along x",
-    "y": "shift along y",
-    "z": "shift along z",
-    "alpha": "turn about x",
-    "beta": "turn about y",
-    "gamma": "turn about z",
+# What a rotor does in each coordinate, y upwards where the axis is horizontal, z where it is vertical.
+_MOTIONS = {
+    "horizontal": {"x": "sway along x", "y": "bounce along y", "z": "surge along the axis"},
+    "vertical": {"x": "sway along x", "y": "sway along y", "z": "bounce along the axis"},
 }
+_TURNS = {"alpha": "rocking about x", "beta": "rocking about y", "gamma": "turning about the axis"}
+_NAMED = 0.2  # of a mode's kinetic energy, from which a coordinate names it
 
 
 def self_excited(machine: Prepared) -> SelfExcited:
@@ -123,7 +122,7 @@ def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion
         backward_dry=found.backward_dry,
         branch_backward=found.branch_backward,
         chamber_forward=_at_chambers(system, scene.fills, found),
-        modes=rest_modes(system),
+        modes=rest_modes(system, scene.rotor.axis),
         campbell=later(campbell, system, np.linspace(0.0, scene.speeds.stop, _DIAGRAM)),
         critical_speeds_dry=_directed(system, dry, dry_shape),
         critical_speeds_wet=_directed(system, wet, wet_shape),
@@ -153,15 +152,26 @@ def _at_chambers(system: RotorSystem, fills: tuple[Fill, ...], found: Response) 
     return np.stack(places, axis=1) if places else np.zeros((found.residual.size, 0), dtype=complex)
 
 
-def rest_modes(system: RotorSystem) -> tuple[RestMode, ...]:
-    """Modes at rest by rising frequency, each with the coordinate that has most of its energy."""
+def rest_modes(system: RotorSystem, axis: str) -> tuple[RestMode, ...]:
+    """Modes at rest by rising frequency, named by the coordinates that share their kinetic energy."""
     found = modes(system)
-    energy = np.abs(found.shape[0]) ** 2 * np.diag(system.mass)[:, None]
-    most = energy.argmax(axis=0)
+    shape = found.shape[0]
+    energy = (shape.conj() * (system.mass @ shape)).real
+    share = energy / energy.sum(axis=0)
+    names = [(_MOTIONS[axis] | _TURNS)[name] for name in system.coordinates]
     return tuple(
-        RestMode(float(frequency), float(ratio), _COORDINATES[system.coordinates[k]])
-        for frequency, ratio, k in zip(found.frequency[0], found.damping_ratio[0], most, strict=True)
+        RestMode(float(frequency), float(ratio), _named(names, part))
+        for frequency, ratio, part in zip(found.frequency[0], found.damping_ratio[0], share.T, strict=True)
     )
+
+
+def _named(names: Sequence[str], share: Array) -> str:
+    """Motions that have most of a mode's energy with their shares; one alone without."""
+    order = np.argsort(-share, kind="stable")
+    told = [k for k in order.tolist() if k == order[0] or share[k] >= _NAMED]
+    if share[order[0]] >= 1.0 - _NAMED:
+        return names[int(order[0])]
+    return ", ".join(f"{names[k]} {100.0 * share[k]:.0f} %" for k in told)
 
 
 def _directed(

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.core.blocks import Check, Section, Table, Words, check
-from leblanc.core.notes import one_line, percent
+from leblanc.core.blocks import Check, Grade, Section, Table, Words
+from leblanc.core.notes import WHOLE, one_line, percent
 from leblanc.core.units import (
     LENGTH,
     MASS,
     NOT_FOUND,
     RPM,
     VOLUME,
+    Unit,
     change_words,
     in_peak,
     in_rpm,
+    measured,
     number,
     over_rpm,
     ranges,
@@ -37,6 +40,7 @@ from solvers.rotor.balance_quality import GRADES, grade_name, grade_of
 if TYPE_CHECKING:
     from leblanc.studies.run.answer import RunAnswer
 
+_ONE = Unit("", 1.0)
 AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
 
 
@@ -91,7 +95,9 @@ def effect(result: RunAnswer) -> str:
     )
     if not at or not way:
         return ""
-    doubts = _wrong(result, top)
+    doubts, error = _wrong(result, top), error_at(result, top)
+    if highest is not None and error > abs(curve.amplitude[top] / curve.amplitude_dry[highest] - 1.0):
+        doubts.append(f"error {_error_words(error)}")
     aside = f" (there {', '.join(doubts)})" if doubts else ""
     return f"With the liquid {at} at {in_rpm(float(result.speed[-1]))}, {way} on the way{aside}."
 
@@ -185,6 +191,35 @@ def amplitude_place(result: RunAnswer) -> str:
     return plane_words(result.motion.position, bool(result.chambers))
 
 
+def error_at(result: RunAnswer, index: int) -> float:
+    """Relative error that the models estimate at a place of the curve; inf: no bound, nan: unknown."""
+    if result.chamberless or result.error_estimate is None:
+        return math.nan
+    order = np.argsort(result.speed, kind="stable")
+    speed, error = result.speed[order], result.error_estimate[order]
+    at = result.curve.speed[index]
+    # Between two speeds the larger of theirs.
+    right = int(np.clip(np.searchsorted(speed, at), 0, speed.size - 1))
+    left = right if speed[right] == at or right == 0 else right - 1
+    return float(max(error[left], error[right]))
+
+
+def headline_error(result: RunAnswer) -> str:
+    """Errors of the largest amplitude and of the last, as a clause; empty where none is estimated."""
+    top = result.curve.top
+    if result.chamberless or result.error_estimate is None or top is None:
+        return ""
+    places = [(top, "of the largest amplitude"), (-1, f"at {in_rpm(float(result.curve.speed[-1]))}")]
+    told = [f"{_error_words(error_at(result, index))} {place}" for index, place in places]
+    return told[-1] if result.speed.size == 1 else ", ".join(told)
+
+
+def _error_words(error: float) -> str:
+    if math.isnan(error):
+        return "not known"
+    return "without a bound" if math.isinf(error) else percent(error)
+
+
 def largest_error(result: RunAnswer) -> str:
     """The largest error that the models estimate; empty where none is estimated."""
     if result.chamberless or result.error_estimate is None or np.isnan(result.error_estimate).all():
@@ -237,6 +272,7 @@ def comparisons(result: RunAnswer) -> list[Comparison]:
         _compared("Largest amplitude", result, wet, dry),
         Comparison("at the speed (rpm)", at_wet, at_dry, "", "rpm"),
         _compared(f"Amplitude at {in_rpm(float(r.speed[-1]))}", result, -1, -1),
+        *_resonance(result),
     ]
     if result.motion is None:
         with_liquid, without = result.critical_speed_wet, result.critical_speed_dry
@@ -251,6 +287,56 @@ def comparisons(result: RunAnswer) -> list[Comparison]:
     return found
 
 
+def _resonance(result: RunAnswer) -> list[Comparison]:
+    """Amplification factor and separation margin of the highest resonance; nothing where there is none."""
+    both = [
+        max(found, key=lambda one: one.amplitude, default=None)
+        for found in (result.resonances, result.resonances_dry)
+    ]
+    if result.speed.size < 2 or both[0] is None:
+        return []
+    factors, margins = (
+        [math.nan if one is None else getattr(one, name) for one in both]
+        for name in ("amplification_factor", "separation_margin")
+    )
+    last = in_rpm(float(result.curve.speed[-1]))
+    rows = (
+        ("Amplification factor at the peak", factors),
+        (f"Separation margin from {last} (%)", [100.0 * margin for margin in margins]),
+    )
+    return [
+        Comparison(label, three_digits(wet), three_digits(dry), "")
+        for label, (wet, dry) in rows
+        if math.isfinite(wet) or math.isfinite(dry)
+    ]
+
+
+def three_digits(value: float) -> str:
+    """A figure of judgement for print."""
+    return NOT_FOUND if math.isnan(value) else "infinite" if math.isinf(value) else f"{value:.3g}"
+
+
+def resonance_table(result: RunAnswer) -> Table:
+    """Each maximum over speed with its amplification factor and separation margin; empty of one alone."""
+    both = {"with liquid": result.resonances, "without liquid": result.resonances_dry}
+    if result.chamberless:
+        del both["with liquid"]
+    every = [(name, one) for name, found in both.items() for one in found]
+    if max(map(len, both.values())) < 2:
+        return Table((), ())
+    unit = unit_for(LENGTH, *(one.amplitude for _, one in every))
+    rows = [
+        (
+            *(name, number(one.speed * RPM), unit.number(one.amplitude)),
+            three_digits(one.amplification_factor),
+            three_digits(100.0 * one.separation_margin),
+        )
+        for name, one in every
+    ]
+    head = ("Peaks", "at (rpm)", f"amplitude ({in_peak(unit.name)})", "amplification", "separation (%)")
+    return Table(rows, head, shown="page")
+
+
 def quality_words(quality: float) -> str:
     """A balance quality with the grade of ISO 21940-11 that it keeps."""
     finest = grade_of(quality)
@@ -263,10 +349,13 @@ def _compared(label: str, result: RunAnswer, wet: int | None, dry: int | None) -
     with_liquid = math.nan if wet is None else float(result.curve.amplitude[wet])
     without = math.nan if dry is None else float(result.curve.amplitude_dry[dry])
     comparable = without > 0.0 and math.isfinite(without) and math.isfinite(with_liquid)
-    ratio = number(with_liquid / without) if comparable else ""
-    unit = unit_for(LENGTH, with_liquid, without)
-    wet_text, dry_text = unit.number(with_liquid), unit.number(without)
+    error = math.nan if wet is None else error_at(result, wet)
+    unit, share = unit_for(LENGTH, with_liquid, without), with_liquid / without if comparable else math.nan
+    ratio = measured(share, error * share, _ONE).partition(" ")[0] if comparable else ""
+    wet_text, dry_text = measured(with_liquid, error * with_liquid, unit), unit.number(without)
     wrong = "" if wet is None else "".join(f", {text}" for text in _wrong(result, wet))
+    if error >= WHOLE:
+        wrong += f", error {_error_words(error)}"
     return Comparison(f"{label} ({in_peak(unit.name)}{wrong})", wet_text, dry_text, ratio, unit.name)
 
 
@@ -325,20 +414,21 @@ def _vibration(result: RunAnswer) -> list[tuple[str, str]]:
         return ", ".join(parts) + " rpm" if parts else "none"
 
     at_rest = [
-        f"{number(mode.frequency / (2.0 * math.pi))} ({mode.damping_ratio:.2g})"
+        f"{number(mode.frequency / (2.0 * math.pi))} Hz ({mode.damping_ratio:.2g}): {mode.moves}"
         for mode in result.motion.modes
     ]
     wet = [("Critical speeds with liquid", listed(result.motion.critical_speeds_wet))]
     return [
         *([] if result.chamberless else wet),
         ("Critical speeds without liquid", listed(result.motion.critical_speeds_dry)),
-        ("Natural frequencies at rest (damping ratios)", ", ".join(at_rest) + " Hz"),
+        ("Natural frequencies at rest (damping ratios)", "; ".join(at_rest)),
     ]
 
 
 def checks(result: RunAnswer) -> list[Check]:
     """Where the answer is not what it seems: each check with its speeds, and the largest error."""
     r, tolerance, held = result.response, result.tolerance, result.held
+    failing = partial(failing_at, headline_speeds(result))
     lost = ~r.converged if held is None else ~r.converged & ~held.at
     found = [failing("Not converged", r.speed, lost)] if held is None or lost.any() else []
     found += _held_limits(result, held) if held is not None else []
@@ -347,18 +437,17 @@ def checks(result: RunAnswer) -> list[Check]:
     if result.capture_speed is not None:
         loose = r.speed <= result.capture_speed
         edge = f" (below {in_rpm(result.capture_speed)})" if loose.any() else ""
-        found.append(
-            check("No annular layer (gravity dominates)", f"{ranges(r.speed, loose)}{edge}", loose.any())
-        )
+        found.append(failing("No annular layer (gravity dominates)", r.speed, loose, edge))
     if result.carried_from is not None:
         loose, where = r.speed < result.carried_from, "by nothing: without friction"
         if math.isfinite(result.carried_from):
             where = f"below {in_rpm(result.carried_from)}"
         edge = f" ({where})" if loose.any() else ""
-        found.append(check("Annulus not reached from rest", f"{ranges(r.speed, loose)}{edge}", loose.any()))
+        found.append(failing("Annulus not reached from rest", r.speed, loose, edge))
     if tolerance is not None and result.error_estimate is not None and not result.chamberless:
         missed = ~(result.error_estimate <= tolerance)
-        found.append(failing(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
+        # What is missed at the headline is said there.
+        found.append(failing_at((), f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
     if not result.chamberless:
         found.append(failing("Wall dry in part", r.speed, r.dry_patch))
     unstable = result.stability == "unstable"
@@ -374,7 +463,9 @@ def checks(result: RunAnswer) -> list[Check]:
         parts = [rpm_bands(result.whirl.bands)] if result.whirl.bands else []
         lost = np.isnan(result.whirl.growth)
         parts += [f"not known at {ranges(r.speed, lost)}"] if lost.any() else []
-        found.append(check("Self-excited whirl", ", ".join(parts) or "none", parts))
+        met = result.whirl.inside(np.array(headline_speeds(result))).any()
+        grade = Grade.WARNING if met else Grade.NOTE if parts else Grade.NOTHING
+        found.append(Check("Self-excited whirl", ", ".join(parts) or "none", grade))
     infinite = np.isinf(result.curve.amplitude)
     if infinite.any():
         found.append(failing("Amplitude infinite", result.curve.speed, infinite))
@@ -382,13 +473,22 @@ def checks(result: RunAnswer) -> list[Check]:
     return [*found, Check("Estimated error of the liquid model", error)] if error else found
 
 
-def failing(label: str, speed: Array, fails: Flags) -> Check:
-    """A check with the speeds that fail it."""
-    return check(label, ranges(speed, fails), fails.any())
+def headline_speeds(result: RunAnswer) -> tuple[float, ...]:
+    """Speeds of the largest amplitude and of the last, rad/s."""
+    return tuple(float(result.curve.speed[k]) for k in (result.curve.top, -1) if k is not None)
+
+
+def failing_at(at: Sequence[float], label: str, speed: Array, fails: Flags, edge: str = "") -> Check:
+    """A check with the speeds that fail it: a warning where one of the headline's does, else a note."""
+    order = np.argsort(speed, kind="stable")
+    touched = np.interp(at, speed[order], fails[order].astype(float)) > 0.0
+    grade = Grade.WARNING if touched.any() else Grade.NOTE if fails.any() else Grade.NOTHING
+    return Check(label, f"{ranges(speed, fails)}{edge}", grade)
 
 
 def _held_limits(result: RunAnswer, held: Held) -> list[Check]:
     """Time-domain states that did not converge to one that repeats."""
+    failing = partial(failing_at, headline_speeds(result))
     found = [failing("Not converged in time", result.speed, held.not_settled)]
     cycles = failing("Limit cycle", result.speed, held.limit_cycle)
     if cycles.grade:
