@@ -134,12 +134,11 @@ def page(
     between: float = 0.12,
     below: float = 0.42,
     apart: float = 0.0,
-    lines: float = 4,
 ) -> Iterator[tuple[Figure, list[list[Any]]]]:
     """Figure in the house style and its rows of axes; laid out above its caption when the body ends.
 
     Heights of the rows and the room round them in inches; columns: axes of each row, one if there is no
-    number; apart: inches between two beside one another; lines: of the caption at most.
+    number; apart: inches between two beside one another.
     """
     with style():
         figure, counts = Figure(), columns or (1,) * len(heights)
@@ -151,7 +150,7 @@ def page(
         for axis in (axis for row in rows for axes in row for axis in (axes.xaxis, axes.yaxis)):
             if type(axis.get_major_formatter()).__name__ == "ScalarFormatter":
                 axis.set_major_formatter(number)
-        lay_out(figure, rows, list(heights), Frame(left, top, between, below), text, int(lines))
+        lay_out(figure, rows, list(heights), Frame(left, top, between, below), text)
         for row in rows:
             for k, axes in enumerate(row if apart else ()):
                 box, room = axes.get_position(), apart / len(row) / WIDTH

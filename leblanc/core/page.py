@@ -219,7 +219,7 @@ def _one(block: Block, figures: Mapping[str, Any], numbers: Iterator[int]) -> It
 
 
 def picture(files: Any, alt: str = "") -> dict[str, Any]:
-    """A figure on disk as a page shows it, its caption as text; the drawn caption is cut off."""
+    """A figure on disk as a page shows it, its caption as text."""
     chosen = files.shown
     content = base64.b64encode(chosen.read_bytes()).decode("ascii")
     return {
@@ -227,5 +227,4 @@ def picture(files: Any, alt: str = "") -> dict[str, Any]:
         "caption": one_line(files.caption.shown.removeprefix(f"{files.title}.")),
         "alt": alt or files.alt or files.title,
         "address": f"data:{TYPES[chosen.suffix]};base64,{content}",
-        "shape": files.drawn,
     }

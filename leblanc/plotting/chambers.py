@@ -17,7 +17,6 @@ from leblanc.liquid.choice import HELD_MODELS
 from leblanc.liquid.filled import FilledChamber
 from leblanc.plotting.bodies import chord, rounded_down
 from leblanc.plotting.page import (
-    MOST_LINES,
     RIGHT,
     WIDTH,
     Figure,
@@ -53,7 +52,6 @@ MOST_DRAWINGS = 3  # side by side
 BETWEEN, BELOW = 0.6, 0.36  # inches
 FRAME = Frame(left=0.15, top=0.26, between=BETWEEN, below=BELOW)
 HEADING_ROW = 0.14  # inches
-NOTED_LINES = 10  # of a caption with notes
 
 
 @dataclass(frozen=True)
@@ -372,7 +370,7 @@ def chamber_figure(result: RunAnswer) -> Figure:
         more = HEADING_ROW * ((len(views.drawings) > 1) + int(out_of_range))
         below = 0.0 if result.motion is None else HEADING_ROW
         frame = replace(FRAME, top=FRAME.top + more, between=BETWEEN + more + below, below=BELOW + below)
-        lay_out(figure, rows, sides, frame, text, MOST_LINES if result.motion is None else NOTED_LINES)
+        lay_out(figure, rows, sides, frame, text)
     return figure
 
 

@@ -8,7 +8,7 @@ import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -19,8 +19,10 @@ import matplotlib
 import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
-from matplotlib.font_manager import findfont, get_font
+from matplotlib.collections import Collection
+from matplotlib.colors import ListedColormap, to_hex, to_rgba
+from matplotlib.container import Container
+from matplotlib.lines import Line2D
 from matplotlib.patches import ConnectionPatch, PathPatch, Polygon
 from matplotlib.path import Path as Lines
 from matplotlib.ticker import MaxNLocator
@@ -36,8 +38,8 @@ from meshes.errors import InputError
 
 # Lengths in inches.
 WIDTH, RIGHT = 6.3, 0.25
-LEGEND_ROW, CAPTION_ROW, MARGIN = 0.145, 0.125, 0.06
-CAPTION_SIZE, MOST_LINES = 7.0, 4  # points; lines of the caption
+LEGEND_ROW, MARGIN = 0.145, 0.06
+MOST_ENTRIES = 5  # of a legend; its caption says the rest
 LEGEND_CHARACTERS = 100  # in one row
 FILM_DPI = 100
 LIGHT = 300_000  # bytes of lines that a browser shows at once
@@ -56,7 +58,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Caption:
-    """Text below a figure."""
+    """What a page says below a figure, and a file in its description."""
 
     shown: str  #: what the figure shows
     origin: str = ""  #: scene, model and assumed values behind it, which a report says elsewhere
@@ -66,11 +68,10 @@ class Caption:
 
 
 class Figure(matplotlib.figure.Figure):
-    """Figure of matplotlib with its caption, alternative text and `drawn`, inches above the caption."""
+    """Figure of matplotlib with its caption and alternative text."""
 
     caption: Caption = Caption("")
     alt: str = ""
-    drawn: tuple[float, float] | None = None
 
     def add_axes(self, *args: Any, **kwargs: Any) -> Any:
         """See matplotlib; somebody else's axes where a figure is drawn on them."""
@@ -106,7 +107,6 @@ class FigureFiles:
     png: Path | None = None  #: the same in pixels, where it was asked for or the lines are heavy
     caption: Caption = field(default=Caption(""))  #: as of `Figure`
     alt: str = ""
-    drawn: tuple[float, float] | None = None
 
     @property
     def shown(self) -> Path:
@@ -136,9 +136,10 @@ def save(figure: Figure, directory: Path, name: str, title: str, png: bool = Fal
     """Write one figure as SVG, without the time of writing; as PNG where asked for or where that is heavy."""
     svg = directory / f"{name}.svg"
     with style(), writing(svg) as path:
-        figure.savefig(path, format="svg", metadata={"Date": None, "Creator": "leblanc", "Title": title})
+        metadata = {"Date": None, "Creator": "leblanc", "Title": title, "Description": _described(figure)}
+        figure.savefig(path, format="svg", metadata=metadata)
     pixels = save_png(figure, directory, name, title) if png or svg.stat().st_size > LIGHT else None
-    return FigureFiles(name, title, svg, pixels, figure.caption, figure.alt, figure.drawn)
+    return FigureFiles(name, title, svg, pixels, figure.caption, figure.alt)
 
 
 def save_png(figure: Figure, directory: Path, name: str, title: str) -> Path:
@@ -147,10 +148,15 @@ def save_png(figure: Figure, directory: Path, name: str, title: str) -> Path:
 
     FigureCanvasAgg(figure)
     with style(), writing(directory / f"{name}.png") as path:
-        metadata = {"Software": None, "Title": title}
+        metadata = {"Software": None, "Title": title, "Description": _described(figure)}
         # The usual level 6 takes a tenth of all drawing for a few per cent of the size.
         figure.savefig(path, format="png", metadata=metadata, pil_kwargs={"compress_level": 3})
     return directory / f"{name}.png"
+
+
+def _described(figure: Figure) -> str:
+    """The caption as one line of plain text."""
+    return one_line(str(figure.caption))
 
 
 def number(value: float, _position: float | None = None) -> str:
@@ -222,11 +228,10 @@ def lay_out(
     heights: list[float],
     frame: Frame,
     caption: Caption | str,
-    most_lines: int = MOST_LINES,
 ) -> None:
-    """Size of the figure, places of its axes, and below them the legend and the caption.
+    """Size of the figure, places of its axes, and below them the legend; the caption is text of the page.
 
-    Rows stand below one another, heights in inches; of the caption `most_lines` are drawn.
+    Rows stand below one another, heights in inches.
     """
     if (given := _GIVEN.get()) is not None:
         readable(given.xaxis)
@@ -234,21 +239,23 @@ def lay_out(
         if given.get_legend_handles_labels()[1]:
             given.legend()
         return
-    figure.caption = Caption(caption) if isinstance(caption, str) else caption
     entries: dict[str, Any] = {}
     for axes in [axes for row in rows for axes in row]:
         readable(axes.xaxis)
         readable(axes.yaxis)
         handles, labels = axes.get_legend_handles_labels()
         entries = dict(zip(labels, handles, strict=True)) | entries
-    lines = _wrapped(str(caption), WIDTH - 2.0 * RIGHT, most_lines)
-    text = CAPTION_ROW * len(lines) + 2.0 * MARGIN
-    columns = max(1, min(4, LEGEND_CHARACTERS // (max(map(len, entries), default=0) + 8)))
-    legend = LEGEND_ROW * -(-len(entries) // columns) + MARGIN
+    # Curves and points before what marks ranges.
+    order = sorted(entries, key=lambda label: _marks_range(entries[label]))
+    listed, rest = order[:MOST_ENTRIES], order[MOST_ENTRIES:]
+    text = Caption(caption) if isinstance(caption, str) else caption
+    besides = "; ".join(f"{look(entries[label])}, {label}" for label in rest)
+    figure.caption = replace(text, shown=f"{text.shown} Besides: {besides}.") if rest else text
+    columns = max(1, min(4, LEGEND_CHARACTERS // (max(map(len, listed), default=0) + 8)))
+    legend = LEGEND_ROW * -(-len(listed) // columns) + MARGIN
     gaps = frame.gaps or (frame.between,) * (len(rows) - 1)
-    total = frame.top + sum(heights) + sum(gaps) + frame.below + legend + text
+    total = frame.top + sum(heights) + sum(gaps) + frame.below + legend + MARGIN
     figure.set_size_inches(WIDTH, total)
-    figure.drawn = WIDTH, total - MARGIN - CAPTION_ROW * len(lines)
     above = frame.top
     for row, height, gap in zip(rows, heights, (*gaps, 0.0), strict=True):
         width = (WIDTH - frame.left - RIGHT) / len(row)
@@ -256,11 +263,41 @@ def lay_out(
             left, bottom = frame.left + i * width, total - above - height
             axes.set_position((left / WIDTH, bottom / total, width / WIDTH, height / total))
         above += height + gap
-    place = {"loc": "lower center", "bbox_to_anchor": (0.5, text / total), "borderaxespad": 0.0}
-    figure.legend(entries.values(), entries.keys(), ncols=columns, borderpad=0.0, **place)
-    for i, line in enumerate(reversed(lines)):
-        height = MARGIN + CAPTION_ROW * (i + 0.25)
-        figure.text(RIGHT / WIDTH, height / total, line, fontsize=CAPTION_SIZE, color="0.25")
+    place = {"loc": "lower center", "bbox_to_anchor": (0.5, MARGIN / total), "borderaxespad": 0.0}
+    figure.legend([entries[label] for label in listed], listed, ncols=columns, borderpad=0.0, **place)
+
+
+_COLOURS = {
+    "#0072b2": "blue", "#d55e00": "red", "#009e73": "green", "#e69f00": "orange", "#56b4e9": "light blue",
+    "#cc79a7": "pink", "#aa3377": "purple", "#000000": "black", "#f0e442": "yellow",
+}  # fmt: skip
+_BAR = 4.0  # points, from which on a line is a bar
+
+
+def _marks_range(handle: Any) -> bool:
+    """A patch or a bar, which marks a range, or a line across the whole panel."""
+    if not isinstance(handle, Line2D):
+        return not isinstance(handle, Container | Collection)
+    return handle.get_linewidth() >= _BAR
+
+
+def look(handle: Any) -> str:
+    """How an entry of a legend looks, in words: "red, dash-dotted"."""
+    if not isinstance(handle, Line2D):
+        return "shaded"
+    red, green, blue, _ = to_rgba(handle.get_color())
+    grey = max(red, green, blue) - min(red, green, blue) < 0.05
+    colour = _COLOURS.get(to_hex(handle.get_color()), "grey" if grey else "coloured")
+    dashes = handle._unscaled_dash_pattern[1]  # type: ignore[attr-defined] # nothing public has it
+    marker = handle.get_marker() not in (None, "None", "", " ")
+    if handle.get_linewidth() >= _BAR:
+        return f"{colour} bar"
+    if handle.get_linestyle() == "None":
+        return f"{colour} marks"
+    kind = "line with marks" if marker else "line"
+    if dashes is not None:
+        kind = "dotted" if max(dashes) < 2.0 else "dashed" if len(dashes) < 3 else "dash-dotted"
+    return f"{colour}, {kind}"
 
 
 def add_windows(
@@ -289,7 +326,7 @@ def add_windows(
     gaps = (*[0.12] * (count - 1), 0.5, *[0.12] * (count - 1))
     rows = [[axes] for axes in whole] + [list(row) for row in wide]
     frame = Frame(left=left, top=0.46, between=0.12, below=0.42, gaps=gaps)
-    lay_out(figure, rows, list(heights), frame, caption, MOST_LINES + 1)
+    lay_out(figure, rows, list(heights), frame, caption)
     for row in wide:
         for axes in row[1:]:
             box = axes.get_position()
@@ -316,41 +353,14 @@ _APART = 0.45  # inches between parts beside one another
 _LINKED = "0.45"  # frames of the panels that are linked, and the lines between them
 
 
-@cache
-def _advance(character: str) -> float:
-    """Width of a character of the caption, inches; 0 if the font does not have it."""
-    font = get_font(findfont("DejaVu Sans"))
-    font.set_size(CAPTION_SIZE, 72)
-    known = font.get_char_index(ord(character)) > 0
-    return float(font.load_char(ord(character)).linearHoriAdvance) / 65536.0 / 72.0 if known else 0.0
-
-
-def _wrapped(text: str, width: float, most: int) -> list[str]:
-    """Lines that fit the figure; characters that the font lacks become boxes, what is too long is cut."""
-    text = "".join(c if _advance(c) > 0.0 else "\N{WHITE SQUARE}" for c in text)
-    lines, used = [""], 0.0
-    for word in text.split(" "):
-        length = sum(map(_advance, word))
-        if used > 0.0 and used + length > width:
-            lines.append("")
-            used = 0.0
-        for character in word + " ":
-            if used + _advance(character) > width and character != " ":
-                lines.append("")
-                used = 0.0
-            lines[-1] += character
-            used += _advance(character)
-    lines = [line.rstrip() for line in lines]
-    return lines if len(lines) <= most else [*lines[: most - 1], lines[most - 1][:-3] + "..."]
-
-
 def require_film(path: Path) -> str:
-    """Ending of a film's path, .gif or .mp4; InputError for another or an .mp4 without an ffmpeg."""
+    """Ending of a film's path, .gif, .html or .mp4; InputError for another or an .mp4 without an ffmpeg."""
     kind = path.suffix.lower()
-    if kind not in (".gif", ".mp4"):
-        raise InputError("--animate", str(path), "a file that ends in .gif or .mp4")
+    if kind not in (".gif", ".html", ".mp4"):
+        raise InputError("--animate", str(path), "a file that ends in .gif, .html or .mp4")
     if kind == ".mp4" and shutil.which(_player()) is None:
-        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
+        allowed = "a .gif or a page that plays, .html, since no ffmpeg was found to write an .mp4"
+        raise InputError("--animate", str(path), allowed)
     return kind
 
 
@@ -370,18 +380,22 @@ def write_film(
     path: Path,
     drawn: Callable[[int, int], None] | None = None,
 ) -> int:
-    """Write a film, whole or not at all, to a .gif or (with an ffmpeg) an .mp4; its number of frames.
+    """Write a film, whole or not at all, to a .gif, a page or (with an ffmpeg) an .mp4; its number of frames.
 
     `make` gives the figure and what sets it to a frame; `rate` is in frames per second; `drawn` is called
     after each with the number drawn and of all.
     """
-    from matplotlib.animation import FFMpegWriter, PillowWriter
+    from matplotlib.animation import FFMpegWriter, HTMLWriter, PillowWriter
 
     kind = require_film(path)
     player = _player()
     with style(), writing(path) as part, TemporaryDirectory() as folder:
         matplotlib.rcParams["animation.ffmpeg_path"] = player
-        writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=rate)
+        writer: Any
+        if kind == ".html":
+            writer = HTMLWriter(fps=rate, embed_frames=True, embed_limit=_PAGE)
+        else:
+            writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=rate)
         figure, show = make()
         # The writers tell the format by the ending.
         whole = Path(folder) / f"film{kind}"
@@ -391,8 +405,36 @@ def write_film(
                 writer.grab_frame()
                 if drawn is not None:
                     drawn(count, len(frames))
+        if kind == ".html":
+            whole.write_text(_playing(whole.read_text(encoding="utf-8")), encoding="utf-8")
         shutil.copyfile(whole, part)
     return len(frames)
+
+
+_PAGE = 200.0  # MB of a page of frames at most
+# Signs of the buttons of a page that plays, in place of a font from the network.
+_BUTTONS = {
+    "fa-minus": "\N{MINUS SIGN}",
+    "fa-fast-backward": "|\N{LEFTWARDS ARROW}",
+    "fa-step-backward": "\N{LEFTWARDS ARROW}",
+    "fa-play fa-flip-horizontal": "\N{BLACK LEFT-POINTING TRIANGLE}",
+    "fa-pause": "||",
+    "fa-play": "\N{BLACK RIGHT-POINTING TRIANGLE}",
+    "fa-step-forward": "\N{RIGHTWARDS ARROW}",
+    "fa-fast-forward": "\N{RIGHTWARDS ARROW}|",
+    "fa-plus": "+",
+}
+
+
+def _playing(page: str) -> str:
+    """matplotlib's page of frames as a document that needs no network and is the same each time."""
+    page = re.sub(r"<link[^>]*font-awesome[^>]*>", "", page)
+    if found := re.search(r"anim([0-9a-f]{32})", page):
+        page = page.replace(found[1], "film")
+    for name, sign in _BUTTONS.items():
+        page = page.replace(f'<i class="fa {name}"></i>', sign)
+    head = '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>Film</title></head><body>'
+    return f"{head}{page}</body></html>\n"
 
 
 def _player() -> str:
@@ -403,9 +445,9 @@ def _player() -> str:
 
 def caption(result: RunAnswer, text: str) -> Caption:
     """What the figure shows, the scene, the model and the values it assumes."""
-    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
-    model = ", ".join(result.models_used)
-    return Caption(text, f"Scene: {one_line(result.name)}. Liquid model: {model}. Assumed: {assumed}.")
+    count, model = len(result.assumed), ", ".join(result.models_used)
+    assumed = f" {count} of its values are assumed." if count else ""
+    return Caption(text, f"Scene: {one_line(result.name)}. Liquid model: {model}.{assumed}")
 
 
 def zero_of(result: RunAnswer) -> str:

@@ -97,7 +97,7 @@ def highest(speed: Array, amplitude: Array) -> Peak:
 _FALLS = 0.9  # of a maximum, below which the amplitude falls on both sides of one that counts
 
 
-def resonances(speed: Array, amplitude: Array) -> tuple[Resonance, ...]:
+def maxima(speed: Array, amplitude: Array) -> tuple[Resonance, ...]:
     """Maxima within a range of rising speeds, shape (n,); ripples that fall by less than a tenth are none."""
     known = ~np.isnan(amplitude)
     x, y = speed[known], amplitude[known]

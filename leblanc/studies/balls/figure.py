@@ -48,7 +48,7 @@ def balls_figure(result: BallsAnswer) -> Figure:
         add_rate_axis(above, "Speed (rad/s)")
         zero = "the unbalance" if result.kind == "jeffcott" else "angle 0 of the unbalances"
         text = f"{sentence(result)} Zero mark: {zero}."
-        lay_out(figure, [[above], [below]], [2.3, 1.6], FRAME, _caption(result, text), most_lines=6)
+        lay_out(figure, [[above], [below]], [2.3, 1.6], FRAME, _caption(result, text))
     return figure
 
 

@@ -57,7 +57,6 @@ WAVE_FRAME = Frame(left=0.1, top=0.1, between=0.0, below=0.44)
 FILM_FRAME = Frame(left=0.1, top=0.28, between=0.0, below=0.26)
 TIME_FRAME = Frame(left=0.72, top=0.12, between=0.12, below=0.4)
 WAVE_HEIGHT, PROFILE_LEFT, PROFILE_BELOW, ASIDE = 2.75, 3.55, 0.15, 0.15  # inches
-NOTED_LINES = 10  # of a caption with notes
 
 
 def unrolled(theta: Array, depth: Array) -> tuple[Array, Array]:
@@ -494,7 +493,7 @@ def wave_figure(wave: Wave) -> Figure:
 def animate(
     wave: Wave, history: WaveFrames, path: Path, drawn: Callable[[int, int], None] | None = None
 ) -> int:
-    """Write the film of a wave in the frame of the drum, a .gif or with ffmpeg an .mp4; its number of frames.
+    """Write the film of a wave in the frame of the drum, a .gif, .html or with ffmpeg .mp4; its frames.
 
     Of a long history its end, as much of it as 120 frames can follow. One history gives the same GIF byte for
     byte, as long as the versions of matplotlib and Pillow stay the same.
@@ -521,7 +520,7 @@ def _film(wave: Wave, history: WaveFrames) -> tuple[Figure, Callable[[int], None
 
 def _beside(figure: Figure, left: Axes, right: Axes, frame: Frame, caption: str) -> None:
     """A drawing and a plot side by side, the plot with room for its labels."""
-    lay_out(figure, [[left, right]], [WAVE_HEIGHT], frame, caption, NOTED_LINES)
+    lay_out(figure, [[left, right]], [WAVE_HEIGHT], frame, caption)
     total, box = figure.get_figheight(), right.get_position()
     x, y = PROFILE_LEFT / WIDTH, box.y0 + PROFILE_BELOW / total
     right.set_position((x, y, 1.0 - RIGHT / WIDTH - x, box.y1 - y))
@@ -553,6 +552,6 @@ def periods_figure(result: PeriodsAnswer) -> Figure:
         for axes in (force, rotation):
             axes.tick_params(labelbottom=False)
         text = f"Means over periods of the whirl seen from the drum. Liquid model: {model}."
-        lay_out(figure, rows, [1.5, 1.0, 1.2], TIME_FRAME, text, NOTED_LINES)
+        lay_out(figure, rows, [1.5, 1.0, 1.2], TIME_FRAME, text)
         figure.alt = "Curves over time of the force on the drum, the liquid's rotation and its depths."
     return figure

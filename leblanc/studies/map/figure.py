@@ -29,7 +29,6 @@ FRAME = Frame(left=0.72, top=0.46, between=0.72, below=0.42)
 PANEL, BAR, BESIDE, ROOM = 2.3, 0.13, 0.55, 1.35  # inches: panel's height, bar's width, left of it, in all
 DARKEST = 2.0  # per cent of the decays that are faster than the colours tell apart
 SHALLOWEST = 0.05  # of the fastest decay: growth slower than that is reported by outline and hatch alone
-LINES = 9  # of the caption
 GROWTH, RATIO = "RdBu_r", "cividis"
 PALER = (0.1, 0.9)  # of the colours of growth: their ends would hide lines and dots
 OUTLINE, NO_WHIRL = "0.1", "0.93"
@@ -64,7 +63,7 @@ def map_figure(result: WhirlMap) -> Figure:
             axes.yaxis.set_major_formatter(number)
             axes.set_xlabel("Speed (rpm)")
             _add_ratios(axes, result)
-        lay_out(figure, [[axes] for axes in panels], [PANEL] * 2, FRAME, _caption(result), LINES)
+        lay_out(figure, [[axes] for axes in panels], [PANEL] * 2, FRAME, _caption(result))
         for axes, bar in zip(panels, bars, strict=True):
             _place_bar(axes, bar)
     return figure
@@ -236,7 +235,7 @@ def cycles_figure(result: WhirlMap) -> Figure:
             f"Scene: {one_line(result.name)}. Liquid model: nonlinear long waves that stand in the whirl's "
             f"frame; liquid friction: {result.friction}; support: {result.damping}; no unbalance or gravity.",
         )
-        lay_out(figure, [[axes] for axes in panels], [2.6, 1.7], CYCLES_FRAME, caption, LINES)
+        lay_out(figure, [[axes] for axes in panels], [2.6, 1.7], CYCLES_FRAME, caption)
         for axes in panels:
             box = axes.get_position()
             axes.set_position((box.x0, box.y0, box.width - ASIDE / WIDTH, box.height))

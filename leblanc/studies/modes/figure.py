@@ -47,7 +47,7 @@ def modes_figure(result: ModesAnswer) -> Figure:
                     axes.set_axis_off()
             rows.append(row)
         caption = _caption(result, stretch)
-        lay_out(figure, rows, [PANEL] * len(rows), MODES_FRAME, caption, 6)
+        lay_out(figure, rows, [PANEL] * len(rows), MODES_FRAME, caption)
         slowest = ", ".join(f"{float(modes.frequency[k]):.4g}" for k in shown)
         figure.alt = (
             f"Shapes of {len(shown)} modes of the liquid along the axis; frequencies {slowest} rad/s."

@@ -297,6 +297,19 @@ def _some(count: int, most: int = LISTED) -> list[int]:
 
 
 @dataclass(frozen=True)
+class Poured:
+    """Volumes near the best ones that a person measures out, and what they give."""
+
+    volume: Annotated[Array, Q("m3", text="volumes", data=False)]
+    value: Annotated[float, Q(name="value of the objective with them, SI")]
+    feasible: Annotated[bool, Q(name="every constraint is met")]
+
+    def words(self) -> str:
+        """Volumes as a person writes them."""
+        return " and ".join(with_unit(volume, VOLUME) for volume in self.volume.tolist())
+
+
+@dataclass(frozen=True)
 class CandidateChamber:
     """A chamber of the scene whose volume was looked for."""
 
@@ -371,6 +384,14 @@ class OptimumAnswer(Best):
     ] = None
     #: from the keyboard; the answer is the best of what was tried until then
     interrupted: Annotated[bool, Q(name="ended before its time")] = False
+    #: of the fewest digits that lose next to nothing; None where no liquid is best
+    poured: Annotated[Poured | None, Q(text="best volumes rounded as a person pours them", when="poured")] = (
+        None
+    )
+    #: a fifth more; None where the best volumes leave no wall dry in part when a little is missing
+    with_margin: Annotated[
+        Poured | None, Q(text="the same with a margin against a dry wall", when="with_margin")
+    ] = None
     stopped: Annotated[str, Q(name="limit that ended the search", data=False)] = ""  #: likewise
 
     @property
@@ -432,9 +453,14 @@ class OptimumAnswer(Best):
         at = f" {self.place}" if self.place and self.unit in ("m", "kg", "kg m") else ""
         about = f"Objective {self.objective}: the {self.meaning}{at}."
         yield Headline(f"{self._sentence()}{at}.", about, shown="both")
+        if self.poured is not None:
+            yield Words(self._poured(self.poured))
+        if self.with_margin is not None:
+            yield Words(self._margin(self.with_margin))
         yield Words(about, shown="text")
         yield self._volumes()
-        paste = ", ".join(f'"{volume * ML:.6g} ml"' for volume in self.volume.tolist())
+        chosen = self.volume if self.poured is None else self.poured.volume
+        paste = ", ".join(f'"{volume * ML:.6g} ml"' for volume in chosen.tolist())
         yield Words(f"volume = {paste}", name="For the scene, chamber by chamber", code=True)
         yield Columns((self._values(), Table(tuple(self._facts()))), (Checks(self.checks(), head=_AT),))
         yield self.constraint_table()
@@ -460,6 +486,19 @@ class OptimumAnswer(Best):
             return f"With {liquid}{kept}, the amplitude is {both[0]} instead of {both[1]}"
         instead = f" instead of {shown(self.baseline, self.unit)}" if self.baseline > 0.0 else ""
         return f"With {liquid}{kept}, the {self.meaning} is {shown(self.value, self.unit)}{instead}"
+
+    def _poured(self, poured: Poured) -> str:
+        """The rounded volumes, and what rounding costs."""
+        value = shown(poured.value, self.unit)
+        doubt = "" if poured.feasible or not self.feasible else ", beyond a constraint"
+        return f"To pour: {poured.words()}, with which it is {value}{doubt}."
+
+    def _margin(self, more: Poured) -> str:
+        value, doubt = shown(more.value, self.unit), "" if more.feasible else ", beyond a constraint"
+        return (
+            "A little less leaves a wall dry in part; with a margin of a fifth: "
+            f"{more.words()}, with which it is {value}{doubt}."
+        )
 
     def _volumes(self) -> Table:
         """The answer chamber by chamber, with the analytical checks at the deflection it has."""

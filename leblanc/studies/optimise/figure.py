@@ -21,7 +21,6 @@ GRAM = 1e3  # grams in one kilogram
 FRAME = Frame(left=0.72, top=0.14, between=0.55, below=0.42)
 LOW = 1.1  # inches: of a panel that stands below another
 HEIGHT, BAR, ROOM = 2.7, 0.13, 0.85  # inches: of a panel, width of a colour bar, room for it
-LINES = 9  # of the caption
 LINE, DRY, BEST, FULL = "#0072B2", "#D55E00", "#009E73", "0.15"
 BARE = {"color": DRY, "linewidth": 1.0, "linestyle": (0, (1, 1.5)), "zorder": 1.5}
 FAR = 3.0  # times the baseline or the best, beyond which points are left out of the picture
@@ -54,7 +53,7 @@ def conditions_figure(result: OptimumAnswer) -> Figure:
             f"Star: the condition that decides. {table.words()}. "
             f"{_MARGIN if len(panels) > 1 else ''}"
         )
-        lay_out(figure, panels, heights, FRAME, _caption(result, text, False), LINES)
+        lay_out(figure, panels, heights, FRAME, _caption(result, text, False))
         figure.alt = (
             f"Vibration with the best volumes and without liquid over "
             f"{'temperature' if table.temperature.size > 1 else 'unbalance'}. {table.words()}."
@@ -125,7 +124,7 @@ def objective_figure(result: OptimumAnswer) -> Figure:
         if count == 2:
             axes = figure.add_axes((0, 0, 1, 1))
             _draw_map(figure, axes, result)
-            lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, _MAP), LINES)
+            lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, _MAP))
             _make_room(figure, axes)
         else:
             shown = min(count, MOST_SLICES)
@@ -133,7 +132,7 @@ def objective_figure(result: OptimumAnswer) -> Figure:
             for k, (axes,) in enumerate(rows):
                 _draw_section(axes, result, k)
             height, text = (HEIGHT, _CURVE) if count == 1 else (1.5, _SECTIONS)
-            lay_out(figure, rows, [height] * shown, FRAME, _caption(result, text), LINES)
+            lay_out(figure, rows, [height] * shown, FRAME, _caption(result, text))
     best = ", ".join(with_unit(volume, VOLUME) for volume in result.volume.tolist())
     figure.alt = (
         f"Vibration over the volumes that were tried; the best, {best}, gives "
@@ -163,7 +162,7 @@ def front_figure(result: OptimumAnswer) -> Figure:
             "at once. The margin is the decay of the slowest-decaying small whirl at the operating "
             "speeds; circles: all decay, the larger the faster; crosses: one grows, the larger the faster. "
         )
-        lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, text, False), LINES)
+        lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, text, False))
         figure.alt = (
             "Vibration over the mass of liquid for the points that no other beats, with their stability "
             "margins, as in the table."

@@ -37,6 +37,7 @@ from leblanc.studies.optimise.answer import (
     EmulatedAnswer,
     OptimumAnswer,
     ParetoFront,
+    Poured,
     WettingVolumes,
     about,
 )
@@ -235,6 +236,9 @@ def _result(
     }
     mass = float(volume @ problem.density)
     said = found.judged
+    forms = _closed_forms(machine, volume, problem.working_speed)
+    _, high = bounds_of(scene, task)
+    poured = poured_volumes(problem, volume, value, high) if volume.any() else None
     return _of_scene(
         scene,
         task,
@@ -252,7 +256,9 @@ def _result(
         mass=mass,
         growth=float(growth(scene, volume[None], growth_speeds(scene, task))[0]),
         **_quality(machine, volume, problem.working_speed),
-        closed_form=_closed_forms(machine, volume, problem.working_speed),
+        closed_form=forms,
+        poured=poured,
+        with_margin=None if poured is None else _with_margin(problem, poured, forms, high),
         equal_within=plan_of(problem).margin,
         evaluations=int(np.unique(found.points, axis=0).shape[0]),
         candidates=Candidates(
@@ -268,6 +274,61 @@ def _result(
         interrupted=found.interrupted,
         stopped=found.stopped,
     )
+
+
+_MARGIN = 1.2  # of the volume that wets a wall: what spills, evaporates and is poured less
+_NEXT = 1.05  # of that volume, up to which a little less leaves the wall dry in part
+_LOST = 0.005  # of the objective, that rounded volumes may lose
+
+
+def poured_volumes(problem: Problem, volume: Array, value: float, high: Array) -> Poured | None:
+    """Volumes with as few digits as lose next to nothing; None where four lose more.
+
+    Parameters
+    ----------
+    volume, high : best volumes and the most that are allowed, m^3, shape (c,)
+    value : of the objective with the former
+    """
+    best = problem.evaluate(volume[None])
+    for digits in (2, 3, 4):
+        rows = np.unique([_rounded(volume, digits, up, high) for up in (False, True)], axis=0)
+        found = problem.evaluate(rows)
+        objective = rows @ problem.density if problem.by_mass else found.objective
+        # As good as the best in what it must keep to, and nearly so in what is made small.
+        kept = found.excess <= max(float(best.excess[0]), 0.0)
+        near = problem.by_mass | (objective <= value + _LOST * abs(value))
+        fit = np.flatnonzero(kept & near)
+        if fit.size:
+            k = int(fit[np.lexsort((rows[fit] @ problem.density, objective[fit]))[0]])
+            return Poured(rows[k], float(objective[k]), bool(found.excess[k] <= 0.0))
+    return None
+
+
+def _rounded(volume: Array, digits: int, up: bool, high: Array) -> Array:
+    """Volumes to some digits, to the nearest or up, none above the most."""
+    nothing = volume <= 0.0
+    size = np.where(nothing, 1.0, volume)
+    step = 10.0 ** (np.floor(np.log10(size)) + 1 - digits)
+    # What rounding of the computation adds is no next step.
+    count = np.ceil(size / step - 1e-9) if up else np.round(size / step)
+    return np.where(nothing, 0.0, np.minimum(np.round(count * step, 15), high))
+
+
+def _with_margin(
+    problem: Problem, poured: Poured, forms: tuple[WettingVolumes, ...], high: Array
+) -> Poured | None:
+    """A fifth more than what just wets a wall; None where more than that is poured anyway."""
+    wetting = np.array([form.optimal_volume for form in forms])
+    if not forms or not np.any((poured.volume > 0.0) & (poured.volume <= _NEXT * wetting)):
+        return None
+    more = _rounded(
+        np.where(poured.volume > 0.0, np.maximum(poured.volume, _MARGIN * wetting), 0.0), 2, True, high
+    )
+    if np.array_equal(more, poured.volume):
+        return None
+    found = problem.evaluate(more[None])
+    value = float(more @ problem.density) if problem.by_mass else float(found.objective[0])
+    return Poured(more, value, bool(found.excess[0] <= 0.0))
 
 
 def _exceeded(problem: Problem, said: Judgement) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ from leblanc.studies.volume.answer import WallVolumes
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from meshes.quantity import Q
-from solvers.synchronous.peaks import Peak, Resonance, highest, resonances
+from solvers.synchronous.peaks import Peak, Resonance, highest, maxima
 from solvers.synchronous.response import LAG, Response, by_speed
 
 _CIRCLE = 1e-9  # of the deflection, that the part against the spin may have in a circle
@@ -207,13 +207,13 @@ class RunAnswer(Answer):
     def resonances(
         self,
     ) -> Annotated[tuple[Resonance, ...], Q(text="maxima of the curve, by rising speed", rows="resonance")]:
-        return resonances(self.curve.speed, self.curve.amplitude)
+        return maxima(self.curve.speed, self.curve.amplitude)
 
     @property
     def resonances_dry(
         self,
     ) -> Annotated[tuple[Resonance, ...], Q(text="the same without liquid", rows="resonance_dry")]:
-        return resonances(self.curve.speed, self.curve.amplitude_dry)
+        return maxima(self.curve.speed, self.curve.amplitude_dry)
 
     @property
     def phase(self) -> Annotated[Array, Q("rad", "phase of the deflection", LAG, _OVER)]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -57,6 +58,7 @@ OUT_OF_RANGE = "model out of range"
 
 CYCLE = (0, (4, 1, 1, 1))  # dashes of a limit cycle's mean
 BAND = {"facecolor": "#CFE3F1", "edgecolor": WET, "hatch": "/////", "linewidth": 0.4}
+TURN = {"facecolor": "#DCE9F4", "edgecolor": "none"}
 ON_TOP = {"facecolor": "#F3E1EC", "edgecolor": "#AA3377", "hatch": "\\\\\\\\", "linewidth": 0.4}
 DOWN = "#009E73"  # after Okabe and Ito
 LAYERS = (
@@ -96,6 +98,8 @@ def amplitude_figure(result: RunAnswer) -> Figure:
     text = "Amplitude of the deflection."
     if result.motion is not None:
         text = f"Largest radius of the axis' orbit {amplitude_place(result)}."
+        if result.held is None and _elliptic(result).any():
+            text += " The band reaches from the least to the largest radius in a turn."
     panels: list[tuple[float, Draw]] = [(2.75, draw_amplitude)]
     if result.held is not None:
         text += (
@@ -157,10 +161,10 @@ def _over_speed(result: RunAnswer, name: str, panels: Sequence[tuple[float, Draw
                 draw(axes, cut(curves, span), result)
                 _number_axes(axes)
         rows[-1][0].set_xlabel("")
-        if len(rows) > 1:
-            for axes in [axes for row in (*rows, *wide) for axes in row]:
-                # For a low panel a label of two lines and no upright names of ranges, which the legend has.
-                axes.set_ylabel(axes.get_ylabel().replace(" (", "\n("))
+        for axes in [axes for row in (*rows, *wide) for axes in row]:
+            # For a low panel a label of two lines and, where it is lower still, no upright names of ranges.
+            axes.set_ylabel(axes.get_ylabel().replace(" (", "\n("))
+            if len(rows) > 1:
                 for upright in [part for part in axes.texts if part.get_rotation() == 90.0]:
                     upright.remove()
         heights = [SHARE * height for height in heights] * 2
@@ -191,6 +195,14 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunAnswer) -> None:
     lines = [(curves.rpm, curves.amplitude), (curves.rpm, curves.amplitude_dry)]
     if curves.held is not None:
         lines += _draw_held(axes, curves, curves.held)
+    elif result.motion is not None and (elliptic := _elliptic(result)).any():
+        order = np.argsort(result.speed, kind="stable")
+        ends = [
+            np.where(elliptic, size, np.nan)[order] * MM for size in (result.amplitude_min, result.amplitude)
+        ]
+        axes.fill_between(
+            result.speed[order] * RPM, *ends, **TURN, zorder=1.2, label="least to largest in a turn"
+        )
     lines += _draw_on_top(axes, curves, result)
     reported(axes, curves, curves.amplitude, "without liquid" if result.chamberless else "with liquid")
     if not result.chamberless:
@@ -205,6 +217,14 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunAnswer) -> None:
     axes.set_ylabel(
         f"Amplitude{'' if result.motion is None else plane_label(bool(result.chambers))} ({MM_PEAK})"
     )
+
+
+_ELLIPTIC = 0.05  # of the largest radius, from which on less in a turn is drawn
+
+
+def _elliptic(result: RunAnswer) -> Flags:
+    """Speeds at which the orbit is no circle, shape (n,)."""
+    return np.asarray(result.amplitude - result.amplitude_min > _ELLIPTIC * result.amplitude)
 
 
 def _draw_held(axes: Axes, curves: Curves, held: HeldCurves) -> list[tuple[Array, Array]]:
@@ -369,6 +389,14 @@ def _turns(degrees: Array) -> Flags:
     return np.abs(np.where(np.isnan(step), 0.0, step)) > 180.0
 
 
+def _critical(result: RunAnswer) -> str:
+    """Both critical speeds of the main mode, as one entry of a legend."""
+    without = in_rpm(result.critical_speed_dry)
+    if result.chamberless:
+        return f"critical speed {without}"
+    return f"critical speed {number(result.critical_speed_wet * RPM)}, {without} without liquid"
+
+
 def background(axes: Axes, curves: Curves, result: RunAnswer, lines: list[Array]) -> None:
     """Ranges of speed and marked speeds, behind the lines."""
     low, high = curves.limits
@@ -386,12 +414,17 @@ def background(axes: Axes, curves: Curves, result: RunAnswer, lines: list[Array]
         if marked:
             x, y = joined([(np.array(span), np.full(2, height)) for span in marked])
             axes.plot(x, y, linestyle=dashes, label=label, **bars)
+    wet = math.nan if result.chamberless else result.critical_speed_wet
+    criticals: tuple[tuple[float, Any, str], ...] = (
+        (wet, (0, (6, 1.5, 1, 1.5, 1, 1.5)), WET),
+        (result.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY),
+    )
+    for critical, line, color in criticals:
+        if low <= critical * RPM <= high:
+            axes.axvline(
+                critical * RPM, color=color, linewidth=0.9, linestyle=line, label=_critical(result), zorder=1
+            )
     for speed, line, color, label in (
-        (
-            None if result.chamberless else result.critical_speed_wet,
-            *((0, (6, 1.5, 1, 1.5, 1, 1.5)), WET, "critical speed with liquid,"),
-        ),
-        (result.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY, "critical speed without liquid,"),
         (result.capture_speed, (0, (8, 3)), "0.3", "annular layer from"),
         (result.carried_from, (0, (2, 2)), "0.3", "annulus reached from rest above"),
     ):

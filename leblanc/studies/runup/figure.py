@@ -34,7 +34,6 @@ SPEED_FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 TIME_FRAME = Frame(left=0.72, top=0.12, between=0.1, below=0.4)
 ENERGY_FRAME = Frame(left=1.75, top=0.12, between=0.0, below=0.42)
 ASIDE = 0.45  # inches, for a second axis on the right
-LINES = 7  # of a caption
 UP, BACK, GAINED, USED = WET, "#56B4E9", WET, DRY
 DRY_BACK = "#E69F00"
 STEADY, WHIRL, RANGE = "0.45", "#F0E442", "#CC79A7"
@@ -85,7 +84,7 @@ def speed_figure(result: RunupAnswer) -> Figure:
             axis.set_major_formatter(number)
         where = f" {result.plane}" if result.plane else ""
         text = f"Deflection of the axis{where} while the speed changes; arrows point on in time."
-        lay_out(figure, [[axes]], [2.9], SPEED_FRAME, caption(result, text), LINES)
+        lay_out(figure, [[axes]], [2.9], SPEED_FRAME, caption(result, text))
         figure.alt = (
             "Curves of the amplitude over speed with and without liquid, the steady branches behind; largest "
             f"{largest(result)}{largest_dry(result)}."
@@ -238,7 +237,7 @@ def time_figure(result: RunupAnswer) -> Figure:
         text += ", the unbalance." if result.kind == "jeffcott" else "."
         if result.gravity > 0.0:
             text += " Place of the liquid: means over whole turns, in which gravity's share drops out."
-        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption(result, text), LINES)
+        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption(result, text))
         rolling = ", the balls' angles" if result.races else ""
         figure.alt = (
             f"Curves over time of speed, amplitude{rolling}, the place of the liquid and the depth of its "
@@ -386,7 +385,7 @@ def energy_figure(result: RunupAnswer) -> Figure:
         axes.set_xlabel("Energy (J)")
         axes.xaxis.set_major_formatter(number)
         text = f"Energy over the whole run; not accounted for: {result.energy_error:.2%} of the work."
-        lay_out(figure, [[axes]], [2.3], ENERGY_FRAME, caption(result, text), LINES)
+        lay_out(figure, [[axes]], [2.3], ENERGY_FRAME, caption(result, text))
         figure.alt = (
             "Bars of the work done on rotor and liquid and of where it went, as in the table of the energy."
         )

@@ -36,7 +36,7 @@ FRAME = Frame(left=0.1, top=0.34, between=0.0, below=0.3)
 MOST_DRAWINGS = 2
 REACH = 1.18  # of a drawing, over the largest wall radius, beside the deflection
 DOWN = 1.09  # where the mark for gravity stands, over the wall's radius
-PLOT_LEFT, PLOT_BELOW, LINES = 0.55, 0.22, 6
+PLOT_LEFT, PLOT_BELOW = 0.55, 0.22
 LIQUID, SURFACE, WALL, AXIS = "#56B4E9", "#0072B2", "0.15", "#D55E00"
 
 
@@ -74,7 +74,7 @@ def film_figure(result: RunupAnswer, frames: RunupFrames) -> tuple[Figure, Show]
 
         text = _describe(frames, factor, sum(map(len, groups[MOST_DRAWINGS:])))
         height = 2.6 if len(axes) < 3 else 2.1
-        lay_out(figure, [axes], [height], FRAME, caption(result, text), LINES)
+        lay_out(figure, [axes], [height], FRAME, caption(result, text))
         total, box = figure.get_figheight(), axes[-1].get_position()
         x, y = box.x0 + PLOT_LEFT / WIDTH, box.y0 + PLOT_BELOW / total
         axes[-1].set_position((x, y, 1.0 - RIGHT / WIDTH - x, box.y1 - y))

@@ -57,7 +57,7 @@ def exciter_figure(result: ExciterAnswer) -> Figure:
         above.tick_params(labelbottom=False)
         below.set_xlabel("Shaft speed (rpm)")
         add_rate_axis(above, "Shaft speed (rad/s)")
-        lay_out(figure, [[above], [below]], [2.3, 1.8], FRAME, _caption(result), most_lines=6)
+        lay_out(figure, [[above], [below]], [2.3, 1.8], FRAME, _caption(result))
     return figure
 
 

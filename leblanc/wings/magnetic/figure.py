@@ -46,7 +46,7 @@ def magnetic_figure(result: MagneticAnswer) -> Figure:
         frame = Frame(left=0.72, top=0.12, between=0.12, below=0.42, gaps=(0.12, 0.5)[-(len(rows) - 1) :])
         if len(rows) == 1:
             frame = Frame(left=0.72, top=0.12, between=0.12, below=0.42)
-        lay_out(figure, rows, heights, frame, _caption(result), most_lines=6)
+        lay_out(figure, rows, heights, frame, _caption(result))
     return figure
 
 

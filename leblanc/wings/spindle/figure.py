@@ -57,7 +57,7 @@ def compliance_figure(result: SpindleAnswer) -> Figure:
                 )
             axes.tick_params(labelbottom=axes is panels[-1])
         panels[-1].set_xlabel("Frequency of the force (Hz)")
-        lay_out(figure, [[axes] for axes in panels], [1.7, 0.85, 1.2, 0.85], FRAME, _caption(result), 6)
+        lay_out(figure, [[axes] for axes in panels], [1.7, 0.85, 1.2, 0.85], FRAME, _caption(result))
     return figure
 
 
@@ -101,7 +101,7 @@ def shapes_figure(result: SpindleAnswer) -> Figure:
             f"Deflection over its largest value in each natural motion without damping.{left}",
             _origin(result),
         )
-        lay_out(figure, [[axes] for axes in panels], [0.85] * len(panels), FRAME, caption, 6)
+        lay_out(figure, [[axes] for axes in panels], [0.85] * len(panels), FRAME, caption)
     return figure
 
 

@@ -193,12 +193,22 @@ def test_film_has_its_frames(tmp_path: Path):
     assert [file.name for file in path.parent.iterdir()] == ["wave.gif"]
 
 
-def test_same_history_same_film_whatever_the_user_sets(tmp_path: Path):
+@pytest.mark.parametrize("kind", [".gif", ".html"])
+def test_same_history_same_film_whatever_the_user_sets(kind: str, tmp_path: Path):
     history = running(bore(), count=3)
-    wave.animate(bore(), history, tmp_path / "a.gif")
+    first, again = (tmp_path / name for name in (f"a{kind}", f"b{kind}"))
+    wave.animate(bore(), history, first)
     with matplotlib.rc_context({"lines.linewidth": 9.0, "font.size": 30.0, "savefig.dpi": 20}):
-        wave.animate(bore(), history, tmp_path / "b.gif")
-    assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
+        wave.animate(bore(), history, again)
+    assert first.read_bytes() == again.read_bytes()
+
+
+def test_a_page_plays_without_a_network(tmp_path: Path):
+    wave.animate(bore(), running(bore(), count=3), tmp_path / "wave.html")
+    page = (tmp_path / "wave.html").read_text(encoding="utf-8")
+    assert page.startswith("<!DOCTYPE html>") and page.count("data:image/png;base64") == 3
+    assert "//" not in page.replace("base64,", "").split("<script")[0] and "font-awesome" not in page
+    assert 'class="fa' not in page and "\N{BLACK RIGHT-POINTING TRIANGLE}" in page
 
 
 def test_same_record_same_figure(tmp_path: Path):
@@ -244,7 +254,7 @@ def test_mp4_needs_an_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(InputError, match="no ffmpeg was found"):
         wave.animate(bore(), running(bore(), count=2), tmp_path / "new" / "wave.mp4")
-    with pytest.raises(InputError, match=r"\.gif or \.mp4"):
+    with pytest.raises(InputError, match=r"\.gif, \.html or \.mp4"):
         wave.animate(bore(), running(bore(), count=2), tmp_path / "new" / "wave.avi")
     assert not list(tmp_path.iterdir())
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 from dataclasses import replace
 from functools import cache
@@ -12,16 +13,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.linalg import eigh
 
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from leblanc.cli import main
+from leblanc.liquid.choose import prepare
 from leblanc.plotting.chambers import chamber_figure, side_by_side
+from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, dry_rotor, load_scene, scene_from_table
 from leblanc.studies.explain.study import explain_scene
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.figure import amplitude_figure, campbell_figure
-from leblanc.studies.run.study import run_scene
+from leblanc.studies.run.study import rest_modes, run_scene
 from leblanc.studies.run.words import comparisons, facts
 from meshes.chamber import Chamber
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
@@ -238,6 +242,24 @@ def test_examples(name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path)
     assert float(compared.wet) == pytest.approx(1e3 * record.peak["amplitude"], rel=1e-3)
     listed = dict(facts(record))["Natural frequencies at rest (damping ratios)"]
     assert float(listed.split()[0]) == pytest.approx(motion.modes[0].frequency / (2 * math.pi), rel=1e-2)
+
+
+@kills("leblanc.studies.run.study:rest_modes", "system.mass @ shape", "shape")
+def test_modes_are_named_by_their_kinetic_energy() -> None:
+    system = prepare(example("tub")).system
+    names = [mode.moves for mode in rest_modes(system, "horizontal")]
+    # Undamped modes by another solver have nearly the same shares.
+    _, shape = eigh(system.stiffness, system.mass)
+    share = 100.0 * shape[:, 0] * (system.mass @ shape[:, 0])
+    most = [float(part) for part in re.findall(r"([\d.]+) %", names[0])]
+    assert most == pytest.approx(sorted(share.tolist(), reverse=True)[: len(most)], abs=3.0)
+    assert names[-2:] == ["surge along the axis", "rocking about y"]
+    assert names[0].startswith("bounce along y") and "rocking about x" in names[0]
+    for name in names:
+        shares = [float(part) for part in re.findall(r"([\d.]+) %", name)]
+        assert not shares or (shares[0] >= shares[-1] and 60.0 < sum(shares) <= 101.0)
+    upright = rest_modes(prepare(example("top_loader")).system, "vertical")
+    assert any("bounce along the axis" in mode.moves for mode in upright)
 
 
 def test_explain(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.core.units import MINUS, RPM, change_words
+from leblanc.core.units import MINUS, RPM, Unit, change_words, measured
 from leblanc.liquid.choose import choose_all, liquid_models, prepare
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
@@ -418,3 +418,21 @@ def test_damped_beyond_a_top() -> None:
     found = lb.run(scene.replace({"rotor.damping": float(damping)}))
     assert np.all(np.diff(found.curve.amplitude) > 0.0)
     assert found.peak == {"speed": found.speed[-1], "amplitude": found.amplitude[-1]}
+
+
+@kills("leblanc.core.units:measured", "1 - math.floor", "2 - math.floor")
+@pytest.mark.parametrize(
+    ("value", "error", "shown"),
+    [
+        (7.952e-3, 0.72e-3, "7.95 \N{PLUS-MINUS SIGN} 0.72"),
+        (5.5635e-3, 2.0e-3, "5.6 \N{PLUS-MINUS SIGN} 2.0"),
+        (0.2863, 0.012, "286 \N{PLUS-MINUS SIGN} 12"),
+        (12.863, 0.37, "12860 \N{PLUS-MINUS SIGN} 370"),
+        (2.8634e-3, 1e-8, "2.863"),  # four digits say all
+        (2.8634e-3, 3e-3, "2.863"),  # nothing is sure: said in words
+        (2.8634e-3, math.nan, "2.863"),
+        (math.inf, 1.0, "infinite"),
+    ],
+)
+def test_no_digit_is_finer_than_the_error(value: float, error: float, shown: str) -> None:
+    assert measured(value, error, Unit("mm", 1e3)) == shown

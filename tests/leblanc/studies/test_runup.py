@@ -861,7 +861,7 @@ def test_animation(tmp_path: Path, record: RunupAnswer) -> None:
     with Image.open(tmp_path / "a.gif") as image:
         assert getattr(image, "n_frames", 1) == 3
         assert image.size[1] % 2 == 0
-    with pytest.raises(InputError, match=r"\.gif or \.mp4"):
+    with pytest.raises(InputError, match=r"\.gif, \.html or \.mp4"):
         film_figures.animate(record, reel, tmp_path / "a.avi")
     with pytest.raises(InputError, match="frames"):
         runup_scene(machine, frames=1)
@@ -917,7 +917,7 @@ def test_command_refuses_before_it_runs(tmp_path: Path, capsys: pytest.CaptureFi
     linear = write_scene(tmp_path / "linear.toml", table(model={"liquid": "linear"}))
     for scene, options, told in (
         (bare, [], 'runup = "missing": must be a table [runup]'),
-        (file, ["--animate", "film.txt"], "must be a file that ends in .gif or .mp4"),
+        (file, ["--animate", "film.txt"], "must be a file that ends in .gif, .html or .mp4"),
         (file, ["--cells", "3"], "--cells = 3: must be from 8 to 65536"),
         (file, ["--workers", "0"], "--workers = 0: must be 1 or more"),
         (linear, ["--animate", str(tmp_path / "film.gif")], "must be auto or long_wave for a film"),

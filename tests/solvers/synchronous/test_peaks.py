@@ -18,7 +18,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import dynamic_stiffness
 from solvers.synchronous.models import LINEAR, STATICS
-from solvers.synchronous.peaks import Answer, Peak, Samples, highest, refine, seeds
+from solvers.synchronous.peaks import Answer, Peak, Samples, highest, maxima, refine, seeds
 from solvers.synchronous.resonances import Tops, planar_tops, resonances
 from solvers.synchronous.response import response
 from tests.mutants import kills
@@ -322,3 +322,49 @@ def test_no_peak() -> None:
     assert not nowhere.known
     assert highest(np.array([1.0, 2.0]), np.array([0.1, np.inf])) == Peak(2.0, np.inf)
     assert highest(np.array([1.0, 2.0]), np.array([0.1, 0.1])) == Peak(1.0, 0.1)
+
+
+def unbalanced(ratio: Array, damping: float) -> Array:
+    """Amplitude of an unbalanced oscillator over its far amplitude, at speeds over the natural frequency."""
+    return np.asarray(ratio**2 / np.sqrt((1.0 - ratio**2) ** 2 + (2.0 * damping * ratio) ** 2))
+
+
+@kills("solvers.synchronous.peaks:maxima", "math.sqrt(0.5)", "0.5")
+@kills("solvers.synchronous.peaks:maxima", "/ (high - low)", "/ (high + low)")
+@kills(
+    "solvers.synchronous.peaks:maxima",
+    "- float(speed[-1])) / abs(float(speed[-1]))",
+    "- float(speed[-1])) / abs(float(x[k]))",
+)
+@pytest.mark.parametrize("damping", [0.01, 0.05, 0.15])
+def test_maxima_as_standards_judge_them(damping: float) -> None:
+    speed = np.linspace(0.3, 2.0, 20001)
+    (found,) = maxima(40.0 * speed, unbalanced(speed, damping))
+    # Of s = r^2 the half-power points solve s^2 = A^2/2 ((1 - s)^2 + 4 zeta^2 s), where
+    # A^2 = 1/(4 zeta^2 (1 - zeta^2)).
+    half = 1.0 / (8.0 * damping**2 * (1.0 - damping**2))
+    low, high = np.sqrt(np.sort(np.roots([half - 1.0, half * (4.0 * damping**2 - 2.0), half])))
+    top = 1.0 / math.sqrt(1.0 - 2.0 * damping**2)
+    # To a step of the speeds, of the width that the factor divides by.
+    step = 1.7 / 20000
+    assert found.speed == pytest.approx(40.0 * top, abs=40.0 * step)
+    assert found.amplification_factor == pytest.approx(top / (high - low), rel=2.0 * step / (high - low))
+    assert found.separation_margin == pytest.approx((2.0 - top) / 2.0, abs=step)
+
+
+def test_ripples_and_ends_are_no_maxima() -> None:
+    speed = np.linspace(0.3, 2.0, 200)
+    assert maxima(speed, unbalanced(speed, 0.9)) == ()  # rises to its end
+    assert maxima(speed, np.ones(200)) == () and maxima(speed[:2], speed[:2]) == ()
+    curve = unbalanced(speed, 0.05)
+    rippled = curve * (1.0 + 1e-3 * (-1.0) ** np.arange(200))
+    assert len(maxima(speed, rippled)) == 1
+    endless = np.where(np.arange(200) == 80, math.inf, curve)
+    (found,) = maxima(speed, endless)
+    assert math.isinf(found.amplification_factor) and found.speed == speed[80]
+    # What has no answer is left out.
+    assert maxima(speed, np.where(np.arange(200) % 7 == 3, math.nan, curve))[0].amplitude <= curve.max()
+    # One that falls by less than to its half-power band counts, without a factor.
+    two = np.array([0.0, 1.0, 0.85, 1.2, 0.0])
+    first, second = maxima(np.arange(1.0, 6.0), two)
+    assert math.isnan(first.amplification_factor) and second.amplification_factor > 0.0

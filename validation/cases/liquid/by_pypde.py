@@ -212,7 +212,7 @@ def waves_figure() -> Figure:
         "of 150 mm, 40 rad/s, linear friction of 2 1/s. Shallow water with dispersion, settled; KdV-Burgers "
         "with the lag of the liquid. The natural wave against the spin has 30.58 rad/s in space."
     )
-    with page([1.45] * len(WHIRLS), text, lines=4) as (figure, rows):
+    with page([1.45] * len(WHIRLS), text) as (figure, rows):
         for [axes], (name, whirl) in zip(rows, WHIRLS.items(), strict=True):
             found = driven(*whirl)
             for wave, look in ((found.shallow, _SHALLOW), (found.family, _FAMILY)):
@@ -237,7 +237,7 @@ def resonance_figure() -> Figure:
         "bound at the natural wave."
     )
     speeds, one, other = resonance()
-    with page([1.6, 1.6], text, lines=4) as (figure, rows):
+    with page([1.6, 1.6], text) as (figure, rows):
         fine = np.linspace(speeds[0], speeds[-1], 400)
         kappa = (1.0 - DEPTH) ** -2
         line = 1.0 - 2.0 * (fine - SPIN) ** 2 / ((1.0 - kappa) * fine**2 + 2.0 * kappa * (fine - SPIN) ** 2)

@@ -229,7 +229,7 @@ def bore_figure() -> Figure:
         "rotation of the liquid in the drum. Bars: what the computed flow is said to be sure of (3 % "
         "before 1.33 s, 15 % later)."
     )
-    with page([1.15, 1.15, 1.0, 1.0], text, lines=5) as (figure, rows):
+    with page([1.15, 1.15, 1.0, 1.0], text) as (figure, rows):
         panels = [axes for [axes] in rows]
         _draw_variants(panels)
         _draw_flow(panels)

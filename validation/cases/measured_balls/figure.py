@@ -30,7 +30,7 @@ def curves_figure() -> Figure:
         "measured (dashed) with 0 to 3 washers."
     )
     room = {"left": 0.74, "top": 0.3, "between": 0.62, "below": 0.45, "apart": 0.5}
-    with page([2.3, 2.2], text, (2, 1), lines=5, **room) as (figure, (above, (below,))):
+    with page([2.3, 2.2], text, (2, 1), **room) as (figure, (above, (below,))):
         figure.alt = (
             "Two panels of amplitude over speed with one and with three washers, measured marks beside "
             "computed lines and bands; below them the amplitude at full speed over the rolling resistance."

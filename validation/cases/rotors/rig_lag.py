@@ -140,7 +140,7 @@ def lag_figure(lags: Sequence[Lag], damping_ratio: float) -> Figure:
         "itself, over the largest steady one. Assumed: mass, damping, place of the unbalance, heights "
         "of the chambers."
     )
-    with page([2.3, 1.6], text, top=0.12, between=0.52, lines=8) as (figure, [[upper], [lower]]):
+    with page([2.3, 1.6], text, top=0.12, between=0.52) as (figure, [[upper], [lower]]):
         _draw_angles(upper, lags, damping_ratio)
         _draw_errors(lower, lags)
     return figure

@@ -183,7 +183,7 @@ def trend_figure(points: Sequence[Point], dry: Point) -> Figure:
     """Run-up over volume and friction, with that without liquid."""
     volumes = list(dict.fromkeys(point.volume for point in points))
     litres = np.array(volumes) * LITRE
-    with page([1.7, 1.4, 1.4], _CAPTION, top=0.12, lines=8) as (figure, rows):
+    with page([1.7, 1.4, 1.4], _CAPTION, top=0.12) as (figure, rows):
         panels = [axes for [axes] in rows]
         _lines(panels, points)
         panels[0].axhline(dry.peak * MM, **_DRY)

@@ -46,5 +46,5 @@ def numbers_figure(answer: BallExplainAnswer) -> Figure:
         add_rate_axis(axes)
         assumed = ", ".join(map(one_line, answer.assumed)) or "nothing"
         origin = f"Scene: {one_line(answer.name)}. Assumed: {assumed}."
-        lay_out(figure, [[axes]], [2.2], FRAME, Caption(figure.alt, origin), most_lines=5)
+        lay_out(figure, [[axes]], [2.2], FRAME, Caption(figure.alt, origin))
     return figure

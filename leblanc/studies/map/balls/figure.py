@@ -70,7 +70,7 @@ def chart_figure(result: BallChart) -> Figure:
         axes.set_xlabel("Speed (rpm)")
         axes.set_ylabel(f"{result.varied} ({unit.name or chr(0x2013)})")
         add_rate_axis(axes)
-        lay_out(figure, [[axes]], [PANEL], FRAME, _caption(result), most_lines=6)
+        lay_out(figure, [[axes]], [PANEL], FRAME, _caption(result))
     return figure
 
 

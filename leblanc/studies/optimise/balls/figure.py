@@ -50,7 +50,7 @@ def design_figure(result: BallDesignAnswer) -> Figure:
         for axes in panels:
             axes.xaxis.set_major_formatter(number)
             axes.yaxis.set_major_formatter(number)
-        lay_out(figure, [[axes] for axes in panels], [1.8, 1.6, 1.9], FRAME, _caption(result), most_lines=7)
+        lay_out(figure, [[axes] for axes in panels], [1.8, 1.6, 1.9], FRAME, _caption(result))
     return figure
 
 
