@@ -75,9 +75,9 @@ def _listed() -> set[Path]:
                 for one in page.parent.glob(
                     f"{entry}.md" if not entry.endswith("*") else f"{entry[:-1]}*.md"
                 ):
-                    if one not in found:
-                        found.add(one)
-                        ahead.append(one)
+                    if (page_of := one.resolve()) not in found:
+                        found.add(page_of)
+                        ahead.append(page_of)
     return found
 
 

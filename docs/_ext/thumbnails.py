@@ -1,7 +1,7 @@
 """The section of pictures as a grid of cards, with thumbnails that are made while the site is built.
 
-In the section stand a picture and a paragraph in turn: what it shows, a link to the page that explains it, and
-the command that draws it. So it reads where nothing makes cards of them.
+In it stand a picture and a paragraph in turn: what it shows, a link to the page that explains it, and the
+command that draws it. So it reads where nothing makes cards of them.
 """
 
 from __future__ import annotations
