@@ -1,7 +1,7 @@
 """Build the documentation site: `python docs/build.py --out out/docs`.
 
-The pages are gathered in one folder (the Markdown as it is, pictures drawn anew, pages made from declarations)
-and go through Sphinx, whose warnings are errors. What comes out is proofread.
+The pages are gathered in one folder (the Markdown as it is, pictures drawn anew, pages made from
+declarations) and go through Sphinx, whose warnings are errors. What comes out is proofread.
 """
 
 from __future__ import annotations

@@ -6,7 +6,6 @@ import ast
 import doctest
 import importlib
 import inspect
-import json
 import math
 import re
 import shutil
@@ -15,7 +14,6 @@ import sys
 import tomllib
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 import pytest
@@ -435,7 +433,8 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for name in ("view_washing_machine", "trade_runup")
     )
     (source / "howto").mkdir()
-    (source / "howto" / "view.md").write_text(f"# Views\n\n## Gallery\n\n### Machines\n\n{cards}", encoding="utf-8")
+    view = source / "howto" / "view.md"
+    view.write_text(f"# Views\n\n## Gallery\n\n### Machines\n\n{cards}", encoding="utf-8")
     # Names as long fill two columns of the index.
     names = [f"```{{py:function}} a_name_of_a_function_as_long_as_any_{k}()\n```" for k in range(4)]
     cited = "```{bibliography}\n:all:\n:style: keyed\n```"
