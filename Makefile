@@ -74,8 +74,8 @@ clean:
 figures: $(BIN)/.installed
 	$(BIN)/python docs/figures.py
 
-# The documentation site in out/docs: pictures drawn again and compared, the pages' commands run, notebooks executed
-# unless they were after their last change, warnings as errors.
+# The documentation site in out/docs: pictures drawn again and compared, the pages' commands run, warnings as errors.
+
 docs: $(BIN)/.installed-docs
 	$(BIN)/python docs/build.py --out out/docs
 

@@ -1,14 +1,13 @@
 """Build the documentation site: `python docs/build.py --out out/docs`.
 
-The pages are gathered in one folder (the Markdown as it is, pictures drawn anew, notebooks executed, an API
-page for each package) and go through Sphinx, whose warnings are errors. What comes out is proofread.
+The pages are gathered in one folder (the Markdown as it is, pictures drawn anew, pages made from
+declarations) and go through Sphinx, whose warnings are errors. What comes out is proofread.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -27,17 +26,12 @@ import output_pages  # noqa: E402
 import proofread  # noqa: E402
 import scene_keys  # noqa: E402
 
-NOTEBOOKS = ROOT / "validation" / "notebooks"
-_PATTERN = re.compile(r"[\w/]+\*$")  # an entry of the contents that stands for several pages
 # Pages whose commands are run.
 RUN = (
     "index.md",
     "tour.md",
     "models/potential.md",
-    *(
-        f"howto/{name}.md"
-        for name in ("machine", "chamber", "volume", "cluster", "results", "export", "units")
-    ),
+    *(f"howto/{name}.md" for name in ("machine", "chamber", "volume", "sweep", "results", "python")),
 )
 
 
@@ -47,13 +41,13 @@ def gather(source: Path, quick: bool) -> None:
     Parameters
     ----------
     source : folder for it; the folder around it is made anew
-    quick : pictures as committed, notebooks only if they were executed before
+    quick : pictures as committed
     """
     shutil.rmtree(source.parent, ignore_errors=True)
     shutil.copytree(_HERE, source, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("references.bib", "CHANGELOG.md", "CITATION.cff"):
         shutil.copyfile(ROOT / name, source.parent / name)
-    api_pages.write(source / "api")
+    api_pages.write(source)
     scene_keys.write(source)
     output_pages.write(source)
     drawn = ROOT / "out" / "figures"
@@ -62,39 +56,6 @@ def gather(source: Path, quick: bool) -> None:
             raise SystemExit("pictures of docs/images are out of date")
         for picture in drawn.glob("*.png"):
             shutil.copyfile(picture, source / "images" / picture.name)
-    _notebooks(source / "notebooks", quick)
-    _without_empty_patterns(source / "index.md")
-
-
-def _without_empty_patterns(index: Path) -> None:
-    """Leave patterns out of the contents that no page matches: Sphinx would warn."""
-    lines = index.read_text(encoding="utf-8").splitlines(keepends=True)
-    kept = [line for line in lines if not _PATTERN.match(line) or [*index.parent.glob(line.strip())]]
-    index.write_text("".join(kept), encoding="utf-8")
-
-
-def _notebooks(target: Path, quick: bool) -> None:
-    """Bring the executed notebooks; those older than their text or what they call are executed first."""
-    executed = ROOT / "out" / "notebooks"
-    texts = sorted(NOTEBOOKS.glob("[0-9]*.py"))
-    called = [path for path in NOTEBOOKS.parent.rglob("*.py") if path.parent != NOTEBOOKS]
-    stale = [
-        text
-        for text in texts
-        if any(_older(executed / f"{text.stem}.ipynb", path) for path in (text, *called))
-    ]
-    if stale and not quick:
-        command = [sys.executable, "-m", "leblanc", "notebooks", *(text.stem for text in stale)]
-        subprocess.run([*command, "--out", str(executed)], cwd=ROOT, check=True)
-    target.mkdir(parents=True, exist_ok=True)
-    for text in texts:
-        book = executed / f"{text.stem}.ipynb"
-        if book.is_file():
-            shutil.copyfile(book, target / book.name)
-
-
-def _older(path: Path, other: Path) -> bool:
-    return not path.is_file() or path.stat().st_mtime < other.stat().st_mtime
 
 
 def sphinx(source: Path, out: Path) -> int:
@@ -138,7 +99,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = parser.parse_args(arguments)
     out = chosen.out.resolve()
     source = out.parent / (out.name + ".source") / "docs"
-    timed("pages, pictures, notebooks", lambda: gather(source, chosen.quick))
+    timed("pages, pictures", lambda: gather(source, chosen.quick))
     wrong = 0 if chosen.quick else timed("commands of the pages", commands)
     wrong = timed("site", lambda: sphinx(source, out)) or wrong
     return timed("proofreading", lambda: proofread.main([str(out)])) or wrong

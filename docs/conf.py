@@ -18,7 +18,7 @@ copyright = "the leblanc developers, BSD-3-Clause"
 version = release = metadata.version("leblanc")
 
 extensions = [
-    "myst_nb",                # Markdown and executed notebooks
+    "myst_parser",            # Markdown
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
     "sphinxcontrib.bibtex",
@@ -38,9 +38,6 @@ myst_heading_anchors = 4
 myst_links_external_new_tab = False
 # What stands on a page can be typed: "65 mm" in straight quotes, --json with two hyphens.
 smartquotes = False
-# The notebooks come executed (docs/build.py); nothing is executed here.
-nb_execution_mode = "off"
-nb_merge_streams = True
 
 autodoc_member_order = "bysource"
 autodoc_mock_imports = ["jax", "pythonfmu"]  # the site does without the extras gpu and export

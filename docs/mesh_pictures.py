@@ -1,4 +1,4 @@
-"""Draw the pictures of docs/meshes.md.
+"""Draw the pictures of docs/howto/chamber.md.
 
 python docs/mesh_pictures.py --out DIR
 """

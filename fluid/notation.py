@@ -1,6 +1,6 @@
 """The symbols of the theory: name in the code, sign in the text, unit, meaning.
 
-`python -m fluid.notation` prints docs/theory/notation.md, which is made from this table.
+`python -m fluid.notation` prints the tables of docs/symbols.md, which are made from these.
 """
 
 from __future__ import annotations
@@ -82,15 +82,15 @@ GROUPS = {
 
 
 def page() -> str:
-    """The table as a page in Markdown."""
+    """The tables in Markdown."""
     lines = [
-        "# Symbols",
+        "## Symbols",
         "",
         "SI units, angles in radians, complex numbers for vectors in the plane. The frame turns with the",
         "drum and its origin is the geometric axis, unless a page says otherwise.",
     ]
     for title, symbols in GROUPS.items():
-        lines += ["", f"## {title}", "", "| in the code | symbol | unit | meaning |", "|---|---|---|---|"]
+        lines += ["", f"### {title}", "", "| in the code | symbol | unit | meaning |", "|---|---|---|---|"]
         lines += [f"| `{s.name}` | ${s.sign}$ | {s.unit or '1'} | {s.meaning} |" for s in symbols]
     return "\n".join(lines) + "\n"
 

@@ -122,7 +122,10 @@ def _sources() -> list[Path]:
 
 
 def test_citations_lead_somewhere() -> None:
-    pages = {p.stem: p.read_text(encoding="utf-8") for p in (ROOT / "docs" / "theory").glob("*.md")}
+    chapters = "".join(p.read_text(encoding="utf-8") for p in sorted((ROOT / "docs" / "theory").glob("*.md")))
+    parts = [part.partition("\n") for part in re.split(r"^## ", chapters, flags=re.MULTILINE)[1:]]
+    pages = {title.lower().replace(" ", "_"): text for title, _, text in parts}
+    assert len(pages) == len(parts)
     keys = set(re.findall(r"@\w+\{(\w+),", (ROOT / "references.bib").read_text(encoding="utf-8")))
     lost = []
     for path in _sources():

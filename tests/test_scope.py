@@ -13,7 +13,7 @@ import pytest
 from tests.oracles.cases import kept_cases
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "scope.md"
+PAGE = ROOT / "docs" / "evidence.md"
 
 # First and last number of what a source numbers; nothing where it has none.
 NUMBERED = {

@@ -1,7 +1,7 @@
-"""Pages of the API reference: the public names of `leblanc` by their use, then each package by module.
+"""The page of the public API: what `import leblanc` offers, by its use.
 
-An object is described once. What `import leblanc` offers stands on the page of public names; on the page of
-its package its line leads there.
+Keys of a machine file and quantities of an answer are described on pages of their own, modules below the
+public names by their docstrings.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ PACKAGES = ("meshes", "fluid", "solvers", "leblanc", "validation")
 # Programs, and notebooks in text form, which are pages of their own.
 _LEFT_OUT = {"__main__", "notebooks"}
 _DIRECTIVE: dict[type, str] = {ast.FunctionDef: "autofunction", ast.ClassDef: "autoclass"}
-# The page of public names: its sections, their introductions, and the names of `leblanc` in them.
-PUBLIC = "public"
+NAME = "api"
+# Sections of the page, their introductions, and the names of `leblanc` in them.
 SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "Machines",
@@ -59,6 +59,8 @@ KEPT = (
     *("solvers.synchronous.response", "solvers.liquid_model"),
 )
 _RESULT = "Answer"  # class that all results inherit from
+_BASE = f"leblanc.core.answer.{_RESULT}"
+_WITH_METHODS = {"Scene"}
 _CITED = re.compile(r"\s*\[[^\]]*(?:theory|\d\d)[^\]]*\]")
 
 
@@ -171,8 +173,8 @@ def results(found: Iterable[Module] | None = None) -> list[Member]:
     while len(names) > known:
         known = len(names)
         names |= {member.name for member in members if names.intersection(member.bases)}
-    classes = [m for m in members if m.name == _RESULT or names.intersection(m.bases)]
-    return sorted(classes, key=lambda member: (member.name != _RESULT, member.name))
+    classes = [m for m in members if m.full == _BASE or names.intersection(m.bases)]
+    return sorted(classes, key=lambda member: (member.full != _BASE, member.name))
 
 
 def summary(node: ast.Module | ast.FunctionDef | ast.ClassDef) -> str:
@@ -187,62 +189,44 @@ def summary(node: ast.Module | ast.FunctionDef | ast.ClassDef) -> str:
 
 
 def public_names() -> dict[str, str]:
-    """Full name of each public object whose short name only one module has."""
-    found: dict[str, list[str]] = {}
-    for module in modules(source_root()):
-        for member in module.members:
-            found.setdefault(member.name, []).append(member.full)
-    return {short: full[0] for short, full in found.items() if len(full) == 1}
+    """Full name of each object that the page describes, by its short name."""
+    found = {name: f"leblanc.{name}" for _, _, names in SECTIONS for name in names}
+    return found | {member.name: member.full for member in results()}
 
 
-def write(folder: Path) -> list[Path]:
-    """Write the pages.
-
-    Parameters
-    ----------
-    folder : where they go, below the packages' own
-
-    Returns
-    -------
-    The pages: public names first, then in the order of the layers
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    by_package: dict[str, list[Module]] = {}
+def write(folder: Path) -> Path:
+    """Write the page into a folder, in the place of the one that says where to find it; its path."""
+    path = folder / f"{NAME}.md"
     found = modules(source_root())
-    answers = results(found)
-    for module in found:
-        by_package.setdefault(module.package, []).append(module)
-    pages = [folder / f"{PUBLIC}.rst"]
-    pages[0].write_text(_public_page(found, answers), encoding="utf-8")
-    for package, members in by_package.items():
-        page = folder / f"{package}.rst"
-        page.write_text(_page(package, members, answers), encoding="utf-8")
-        pages.append(page)
-    return pages
+    path.write_text(_page(found, results(found)), encoding="utf-8")
+    return path
 
 
-def _public_page(found: Iterable[Module], answers: list[Member]) -> str:
-    """The public names of `leblanc` and its results, each with its docstring."""
+def _page(found: Iterable[Module], answers: list[Member]) -> str:
+    """The public names of `leblanc` with their docstrings, then its results."""
     members = {member.full: member for module in found for member in module.members}
-    title = "Public names"
     lines = [
-        title,
-        "=" * len(title),
+        "# Public names",
         "",
-        "After ``import leblanc as lb``, each is ``lb.NAME``.",
+        "After `import leblanc as lb`, each is `lb.NAME`. The short way in: [from Python](howto/python.md).",
         "",
-        *_promise(found),
+        *_as_written(_promise(found)),
     ]
     for section, introduction, names in SECTIONS:
         lines += _section(section, introduction, [members[f"leblanc.{name}"] for name in names])
-    text = "What calls return. All inherit from :py:obj:`Answer <leblanc.core.answer.Answer>`."
-    return "\n".join(lines + _section("Results", text, answers))
+    base, *others = answers
+    text = (
+        "What calls return. All inherit from :py:obj:`Answer <leblanc.core.answer.Answer>`; "
+        "their quantities stand on the :doc:`page of outputs </outputs>`, examples in their docstrings."
+    )
+    rows = [(f"``{member.name}``", member.summary) for member in others]
+    return "\n".join([*lines, *_section("Results", text, [base]), *_as_written(_table(rows))])
 
 
 def _promise(found: Iterable[Module]) -> list[str]:
     """What scripts may rely on, besides the names of the page."""
     there = {module.name: module for module in found}
-    below = [(f":py:mod:`{name}`", there[name].summary) for name in KEPT]
+    below = [(f"``{name}``", there[name].summary) for name in KEPT]
     groups = ", ".join(f"``{group}``" for group in (registry.COMMANDS, registry.LIQUIDS, registry.MACHINES))
     return [
         "Scripts may rely on the names of this page, their parameters and what answers carry by name; on",
@@ -257,38 +241,25 @@ def _promise(found: Iterable[Module]) -> list[str]:
 
 
 def _section(title: str, introduction: str, members: list[Member]) -> list[str]:
-    """A heading, a table of members, then their docstrings."""
-    lines = [title, "-" * len(title), "", introduction, "", *_table(_rows(members))]
+    """A heading, then the docstrings of its members."""
+    lines = [introduction, ""]
     for member in members:
         lines += _described(member)
-    return lines
+    return [f"## {title}", "", *_as_written(lines)]
 
 
-def _page(package: str, members: list[Module], answers: list[Member]) -> str:
-    elsewhere = {member.full for member in answers}
-    lines = [package, "=" * len(package), ""]
-    lines += _table([(f":py:mod:`{module.name}`", module.summary) for module in members])
-    for module in members:
-        lines += ["", module.name, "-" * len(module.name), "", f".. automodule:: {module.name}", ""]
-        lines += _table(_rows(module.members))
-        for member in module.members:
-            if member.full == f"{module.name}.{member.name}" and member.full not in elsewhere:
-                lines += _described(member)
-    return "\n".join(lines)
+def _as_written(lines: list[str]) -> list[str]:
+    """reStructuredText in a page of Markdown."""
+    return ["```{eval-rst}", *lines, "```", ""]
 
 
 def _described(member: Member) -> list[str]:
-    """The directive for the docstring of a member."""
+    """The directive for the docstring of a member, of some classes with their methods."""
     lines = [f".. {member.directive}:: {member.full}"]
-    # matplotlib gives each of its classes a method `set` with a docstring that is its own, pydantic each of
-    # its models a `model_config` with words in another markup.
-    members = ["   :members:", "   :exclude-members: set, model_config", ""]
-    return lines + (members if member.directive == "autoclass" else [""])
-
-
-def _rows(members: Iterable[Member]) -> list[tuple[str, str]]:
-    """Names that lead to their docstrings, and what they are."""
-    return [(f":py:obj:`{member.name} <{member.full}>`", member.summary) for member in members]
+    if member.full == _BASE or member.name in _WITH_METHODS:
+        # pydantic gives each of its models a `model_config` with words in another markup.
+        lines += ["   :members:", "   :exclude-members: model_config"]
+    return [*lines, ""]
 
 
 def _table(rows: list[tuple[str, str]]) -> list[str]:

@@ -8,7 +8,6 @@ parameters are the annotations as they are written in the source.
 from __future__ import annotations
 
 import ast
-import json
 import re
 from pathlib import Path
 from typing import Any
@@ -78,7 +77,7 @@ def _place(text: str, known: set[str]) -> str:
     if found["page"]:
         page = found["page"]
         numbers = re.sub(r"\d+", lambda n: f":ref:`{n[0]} <{page}-eq-{n[0]}>`", rest)
-        return f"theory: :doc:`{page} </theory/{page}>`" + (numbers if "eq." in rest else rest)
+        return f"theory: :ref:`{page} <theory-{page}>`" + (numbers if "eq." in rest else rest)
     key = found["key"]
     return (f":cite:label:`{key}`" if key in known else key) + _escaped(rest)
 
@@ -179,8 +178,8 @@ def setup(app: Sphinx) -> dict[str, Any]:
 
     def citations(app: Sphinx, docname: str, source: list[str]) -> None:
         """Keys of papers in the pages become links."""
-        notebook = app.env.doc2path(docname).suffix == ".ipynb"
-        source[0] = (linked_notebook if notebook else linked)(source[0], known)
+        if app.env.doc2path(docname).suffix == ".md":
+            source[0] = linked(source[0], known)
 
     app.connect("autodoc-process-docstring", process)
     app.connect("source-read", citations)
@@ -197,19 +196,3 @@ def linked(text: str, known: set[str]) -> str:
             parts[i],
         )
     return "".join(parts)
-
-
-def linked_notebook(content: str, known: set[str]) -> str:
-    """The same for the text of a notebook; what its code printed is no Markdown and stays as it is.
-
-    Its pictures get the words that they bring, which MyST-NB takes from the cell alone.
-    """
-    book = json.loads(content)
-    for cell in book["cells"]:
-        if cell["cell_type"] == "markdown":
-            cell["source"] = linked("".join(cell["source"]), known)
-        for output in cell.get("outputs", ()):
-            alt = output.get("metadata", {}).get("image/png", {}).get("alt")
-            if alt:
-                cell["metadata"].setdefault("mystnb", {})["image"] = {"alt": alt}
-    return json.dumps(book)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
 
@@ -32,18 +34,33 @@ moves with the axis, no liquid), `machine_critical_speed` (rad s-1, no liquid, u
 
 
 def page() -> str:
-    """The page in Markdown."""
+    """The page in Markdown: what several answers have once, then each answer's own."""
     found = lb.outputs()
-    parts, command = [_HEAD], ""
+    count = Counter(one.row for one in found.quantities)
+    shared = list(dict.fromkeys(one.row for one in found.quantities if count[one.row] > 1))
+    said = "Quantities of more than one answer; each answer below names those that it has."
+    parts, command = [_HEAD, f"## In several answers\n\n{said}\n", _table(shared)], ""
     for kind, each in groupby(found.quantities, lambda one: one.answer):
         rows = list(each)
         if rows[0].question != command:
             command = rows[0].question
             parts.append(f"## {command}\n")
         parts.append(f"### {kind}\n\n{found.titles[kind]}\n")
-        lines = [HEAD, tuple("---" for _ in HEAD), *(_cells(one.row) for one in rows)]
-        parts.append("".join("| " + " | ".join(cells) + " |\n" for cells in lines))
+        own = [one.row for one in rows if count[one.row] == 1]
+        names = [one.row[0].partition(" ")[0] for one in rows if count[one.row] > 1]
+        # Of a record that is shared as a whole its name is enough.
+        names = [name for name in names if name.rpartition(".")[0].removesuffix("[]") not in names]
+        if own:
+            parts.append(_table(own))
+        if names:
+            listed = ", ".join(f"`{name}`" for name in names)
+            parts.append(f"And, as [above](#in-several-answers): {listed}.\n")
     return "\n".join(parts)
+
+
+def _table(rows: Sequence[tuple[str, ...]]) -> str:
+    lines = [HEAD, tuple("---" for _ in HEAD), *map(_cells, rows)]
+    return "".join("| " + " | ".join(cells) + " |\n" for cells in lines)
 
 
 def write(folder: Path) -> Path:

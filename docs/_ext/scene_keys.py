@@ -21,10 +21,10 @@ ROTORS = parts_of(Scene.model_fields["rotor"])
 _HEAD = """# Keys of a scene and of a study
 
 Every key that a scene file or a study file may have. This page is made from the code that checks the files
-(`docs/_ext/scene_keys.py`); [howto/machine](howto/machine.md) shows scenes, [sweep](sweep.md) studies.
+(`docs/_ext/scene_keys.py`); [your machine](howto/machine.md) shows scenes, [sweeps](howto/sweep.md) studies.
 
 A quantity is a plain number in the SI unit that stands here, or a text with a unit, `"65 mm"`; see
-[units](howto/units.md). A key without a default must be given. Where a meaning ends with "or" and another
+[units](howto/machine.md). A key without a default must be given. Where a meaning ends with "or" and another
 key, exactly one of the two must be given. `leblanc new` writes a scene to start from, and
 `leblanc new --list` lists the examples.
 """

@@ -1,7 +1,7 @@
-"""The page of pictures as a grid of cards, with thumbnails that are made while the site is built.
+"""The section of pictures as a grid of cards, with thumbnails that are made while the site is built.
 
-On the page stand a picture and a paragraph in turn: what it shows, a link to the page that explains it, and
-the command that draws it. So it reads where nothing makes cards of them.
+In it stand a picture and a paragraph in turn: what it shows, a link to the page that explains it, and the
+command that draws it. So it reads where nothing makes cards of them.
 """
 
 from __future__ import annotations
@@ -11,11 +11,12 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from docutils import nodes
 from PIL import Image
 from sphinx.application import Sphinx
 
-PAGE = "gallery"
+PAGE = "howto/view"
 _WIDE, _HIGH = 480, 360  # pixels at most: twice what a card is wide, for screens of many dots
 _FOLDER = "thumbnails"
 
@@ -24,7 +25,8 @@ def cards(app: Sphinx, doctree: nodes.document, docname: str) -> None:
     """Put a grid of cards in the place of the pictures of each section."""
     if docname != PAGE or app.builder.format != "html":
         return
-    for section in list(doctree.findall(nodes.section)):
+    gallery = next(one for one in doctree.findall(nodes.section) if "gallery" in one["ids"])
+    for section in list(gallery.findall(nodes.section)):
         pairs = list(_pairs(section))
         if pairs:
             grid = nodes.container("", *(_card(app, *pair) for pair in pairs), classes=["gallery"])
@@ -49,9 +51,10 @@ def _card(app: Sphinx, image: nodes.image, words: nodes.paragraph) -> nodes.cont
     name = app.builder.images[uri] = app.env.images[uri][1]
     folder = Path(app.outdir, app.builder.imagedir)
     wide, high = thumbnail(Path(app.srcdir, uri), folder / _FOLDER / f"{Path(name).stem}.webp")
-    place = f"{app.builder.imagedir}/{_FOLDER}/{Path(name).stem}.webp"
+    images = "../" * PAGE.count("/") + app.builder.imagedir
+    place = f"{images}/{_FOLDER}/{Path(name).stem}.webp"
     shown = (
-        f'<a href="{app.builder.imagedir}/{name}"><img src="{place}" alt="{escape(image["alt"])}" '
+        f'<a href="{images}/{name}"><img src="{place}" alt="{escape(image["alt"])}" '
         f'width="{wide}" height="{high}" loading="lazy" decoding="async"></a>'
     )
     text = words.astext().partition(" (")[0]
@@ -66,7 +69,7 @@ def _card(app: Sphinx, image: nodes.image, words: nodes.paragraph) -> nodes.cont
 
 
 def thumbnail(picture: Path, small: Path) -> tuple[int, int]:
-    """Write a small picture; of one that is higher than a card the top, where the curves are.
+    """Write a small picture; of one that is higher than a card the panels that fit, else the whole.
 
     Parameters
     ----------
@@ -80,7 +83,12 @@ def thumbnail(picture: Path, small: Path) -> tuple[int, int]:
     small.parent.mkdir(parents=True, exist_ok=True)
     with Image.open(picture) as whole:
         copy = whole.convert("RGB")
-    copy = copy.crop((0, 0, copy.width, min(copy.height, copy.width * _HIGH // _WIDE)))
+    limit = copy.width * _HIGH // _WIDE
+    if copy.height > limit:
+        # Between panels stand rows of one colour.
+        least = np.asarray(copy).min(axis=(1, 2))
+        gaps = np.flatnonzero(least[limit // 2 : limit] == 255)
+        copy = copy.crop((0, 0, copy.width, limit // 2 + int(gaps[-1]) if gaps.size else copy.height))
     copy.thumbnail((_WIDE, _HIGH), Image.Resampling.LANCZOS)
     copy.save(small, "WEBP", quality=80, method=6)
     return copy.size

@@ -73,7 +73,7 @@ def test_the_crest_that_breaks_does_not_hang_on_its_nodes() -> None:
     # None overhangs; more nodes go further, with more slope.
     assert [row.time for row in ends] == sorted(row.time for row in ends) and ends[-1].time < 67.0
     assert [row.slope for row in ends] == sorted(row.slope for row in ends) and ends[-1].slope < 90.0
-    page = (ROOT / "docs" / "breaking.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8")
     for row in crests.kept():
         assert f"{row.crest:.3f}, {row.slope:.1f} deg, {row.crest_number:.2f}" in page
     assert len(found[crests.MOST[0], 60.0].depth) == crests.angles().size
@@ -112,5 +112,5 @@ def test_the_figure_and_its_page() -> None:
     assert figure.alt == alternative(kept()) and len(pair_shown(kept())) == 2
     finest = [row for row in crests.kept() if row.most == max(crests.MOST)]
     assert crest_figure().alt == crest_words(finest) and f"{finest[-1].slope:.1f} deg" in crest_words(finest)
-    page = (ROOT / "docs" / "breaking.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8")
     assert "(images/breaking.png)" in page and "(images/breaking_crest.png)" in page

@@ -159,10 +159,10 @@ def test_what_is_kept() -> None:
 def test_the_figure_and_the_page_show_it() -> None:
     assert len(whirl_figure().axes) == 2
     assert "Circles" in alternative(kept())
-    page = (ROOT / "docs/theory/potential.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/theory/nonlinear.md").read_text(encoding="utf-8")
     for row in kept().grown:
         assert f"| {row.crest:.3f} | {row.slope:.0f} | {row.crest_number:.2f} |" in page
-    held = (ROOT / "docs/held.md").read_text(encoding="utf-8")
+    held = (ROOT / "docs/models/time_domain.md").read_text(encoding="utf-8")
     found = kept_held()
     assert [(pair.example, pair.rpm) for pair in found] == [case[:2] for case in CASES]
     for pair in found:

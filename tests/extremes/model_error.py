@@ -1,6 +1,6 @@
 """How well the estimated errors of the liquid models cover the true ones: random machines, both models.
 
-`python -m tests.extremes.model_error` prints the table of docs/models.md.
+`python -m tests.extremes.model_error` prints the table of docs/models/overview.md.
 """
 
 from __future__ import annotations

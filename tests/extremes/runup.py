@@ -1,6 +1,6 @@
 """Run-ups at the ends of what may be asked: an answer with its error, or a plain no.
 
-`python -m tests.extremes.runup` prints the table of docs/extremes.md.
+`python -m tests.extremes.runup` prints the table of docs/accuracy.md.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The wave models at the ends of what may be asked: an answer, or a plain no.
 
-`python -m tests.extremes.waves` prints the table of docs/extremes.md.
+`python -m tests.extremes.waves` prints the table of docs/accuracy.md.
 """
 
 from __future__ import annotations

@@ -10,8 +10,8 @@ from fluid.notation import GROUPS, page
 ROOT = Path(__file__).parents[2]
 
 
-def test_the_page_is_made_from_the_table() -> None:
-    assert (ROOT / "docs" / "theory" / "notation.md").read_text(encoding="utf-8") == page()
+def test_the_page_has_the_tables() -> None:
+    assert page() in (ROOT / "docs" / "symbols.md").read_text(encoding="utf-8")
 
 
 def test_names_are_used() -> None:

@@ -1,6 +1,6 @@
 """What a better long wave would bring: errors of the force beside the exact wave, by model and by cells.
 
-`python -m tests.validation.better_long_wave` computes the tables of docs/theory/long_wave.md, in minutes, and
+`python -m tests.validation.better_long_wave` computes the tables of docs/theory/nonlinear.md, in minutes, and
 keeps them in better_long_wave.json.
 """
 

@@ -59,7 +59,7 @@ def test_damping_swings_the_load_as_far_as_asked() -> None:
 
 def on_the_page() -> list[list[float]]:
     """Gains of two, three and four concentric rings: at speed, at the peak, in a run-up."""
-    page = (Path(__file__).parents[2] / "docs" / "claims.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "evidence.md").read_text(encoding="utf-8")
     cells = page.split("| 2, 3, 4 concentric rings |")[1].split("|")[1:4]
     return [[float(each) for each in cell.split(", ")] for cell in cells]
 

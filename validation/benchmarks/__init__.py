@@ -1,1 +1,1 @@
-"""Cost against accuracy of every wave model, beside other codes in the same run; see docs/benchmarks.md."""
+"""Cost against accuracy of every wave model, beside other codes in the same run; see docs/accuracy.md."""

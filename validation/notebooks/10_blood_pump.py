@@ -9,7 +9,7 @@
 #
 # The rotor of an axial blood pump hangs in two magnetic bearings. [BG18] writes down its motion, makes a
 # synergetic controller for it and reports its motion in time. The equations are derived again in
-# `docs/theory/magnetic.md`; the pump has a page, `docs/blood_pump.md`, and a scene,
+# `docs/theory/rotors.md`; the pump has a page, `docs/other_machines.md`, and a scene,
 # `examples/blood_pump.toml`.
 
 # %% [markdown]
@@ -66,7 +66,7 @@ picture(coils_figure())
 #
 # Not compared, because the data are not given: 5.4 mA and half of a PID control's current (force constant,
 # bias current, loads and that PID control), the curves of figures 4 to 6 (loads, starts), and the pressure of
-# figure 7 (the pump's curve). `docs/blood_pump.md` says more.
+# figure 7 (the pump's curve). `docs/other_machines.md` says more.
 #
 # ## Asserted
 

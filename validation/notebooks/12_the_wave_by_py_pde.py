@@ -8,14 +8,14 @@
 # # 12. The wave by py-pde
 #
 # A layer of liquid on the wall of a drum that whirls, by two equations, both solved by py-pde's `solve`:
-# the shallow-water equations of the turning layer (`docs/theory/long_wave.md`), which have waves with the
-# spin and against it, and KdV-Burgers (`docs/theory/kdv.md`), which has those of one family and costs a
+# the shallow-water equations of the turning layer (`docs/theory/nonlinear.md`), which have waves with the
+# spin and against it, and KdV-Burgers (`docs/theory/nonlinear.md`), which has those of one family and costs a
 # hundredth. They stand side by side here. Where does each hold?
 
 # %% [markdown]
 # ## Who measured or printed what
 #
-# * Nothing was measured. The frequencies of small waves are exact (`docs/theory/waves.md`, eq. 7), and so
+# * Nothing was measured. The frequencies of small waves are exact (`docs/theory/liquid.md`, waves, eq. 7), and so
 #   are rates of decay and of steepening of small waves, by hand. For the rest two equations that were derived
 #   and discretised apart are held against each other: finite volumes in time, and Fourier modes.
 # * A balancer by a forced KdV-Burgers equation is published [LN14]; its abstract was read. `leblanc validate

@@ -13,8 +13,8 @@
 # wall at the floor is called optimal in [DR18, section 5]: with less the near wall is dry all the way up.
 #
 # This page holds the closed forms of the package against an independent solution by finite elements, and
-# against the formulas as their sources print them. The derivations are in `docs/theory/statics.md` and
-# `docs/theory/errata.md`.
+# against the formulas as their sources print them. The derivations are in `docs/theory/liquid.md` and
+# `docs/theory/errors.md`.
 
 # %% [markdown]
 # ## Who measured or printed what

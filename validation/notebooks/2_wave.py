@@ -8,8 +8,8 @@
 # # 2. The wave in the layer: exact theory and computed flow
 #
 # A layer of liquid lies on the wall of a drum that whirls. What force does it put on the drum? Three
-# answers are compared: the exact linear theory of the plane inviscid layer (`docs/theory/waves.md`), the
-# nonlinear long-wave model of the package (`docs/theory/long_wave.md`), and two-phase flow computed with
+# answers are compared: the exact linear theory of the plane inviscid layer (`docs/theory/liquid.md`), the
+# nonlinear long-wave model of the package (`docs/theory/nonlinear.md`), and two-phase flow computed with
 # OpenFOAM.
 
 # %% [markdown]
@@ -117,7 +117,7 @@ Table(
 # ## One family of waves
 #
 # Where waves of one family alone matter the package has the equation of Korteweg and de Vries
-# (`docs/theory/kdv.md`). A wave of vanishing height with one crest lags behind the long waves by the
+# (`docs/theory/nonlinear.md`). A wave of vanishing height with one crest lags behind the long waves by the
 # coefficient of its dispersion, which is the first term of a series in the depth. So what the exact frequency
 # gives for that coefficient must come to it as the square of the depth: within `L^2` of itself, and four
 # times nearer at half the depth.

@@ -9,7 +9,7 @@
 #
 # Two rigs with water in transparent chambers, filmed by the authors of [DR18]: on which side of the rotor
 # does the liquid stand, below, at and above the critical speed? The package answers with a planar rotor
-# whose liquid is in exact equilibrium in the turning drum (`docs/theory/rotor.md`).
+# whose liquid is in exact equilibrium in the turning drum (`docs/theory/rotors.md`).
 
 # %% [markdown]
 # ## Who measured or printed what
@@ -63,7 +63,7 @@ case_table(horizontal)
 # %% [markdown]
 # Could the run-up have been too fast for a steady answer? The same rig run up in time, its liquid as long
 # waves with laminar friction, gravity across the axis: the slower ramp gives the steady angles, the faster
-# one leaves the measured ones at the low speeds (more rates in `docs/runup.md`).
+# one leaves the measured ones at the low speeds (more rates in `docs/howto/runup.md`).
 
 # %%
 measured = data("dr18_fig24.json")
@@ -79,7 +79,7 @@ Table(("Liquid behind the unbalance, deg", *(f"{speed} rpm" for speed in measure
 # ## At rest
 #
 # Before the rig turns the water lies at the bottom of both chambers, and a run-up from rest begins with that
-# pool (`docs/theory/pool.md`). Its shape follows from the volume alone, here summed up over the widths of a
+# pool (`docs/theory/nonlinear.md`). Its shape follows from the volume alone, here summed up over the widths of a
 # circle. A shallow pool slides to and fro like a point on the wall, and the half full cylinder has the
 # slowest frequency of the literature, `omega^2 R/g = 1.3557`.
 

@@ -9,7 +9,7 @@
 #
 # A rotor partly filled with liquid can whirl by itself, without any unbalance: the rotor and a wave that
 # runs round the drum feed each other. Where, and how fast does it grow? The package solves the
-# characteristic equation of rotor and plane layer (`docs/theory/whirl.md`); it is held against known
+# characteristic equation of rotor and plane layer (`docs/theory/rotors.md`); it is held against known
 # figures and against the coupled nonlinear model in time, which shares only the rotor with it.
 
 # %% [markdown]
@@ -20,7 +20,7 @@
 #   is known to one step, a rate to its last digit.
 # * Nothing here was measured. Of experiments it is reported, without data at hand, that a chamber
 #   completely full shows no whirl of its own, which is one of the limits below, and that the whirl has
-#   hysteresis between running up and down, which limit cycles have too (`docs/whirl.md`).
+#   hysteresis between running up and down, which limit cycles have too (`docs/howto/stability.md`).
 #
 # ## Assumed
 #

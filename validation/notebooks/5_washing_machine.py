@@ -9,7 +9,7 @@
 #
 # A front-loading washing machine: a tub on two springs and two dampers with an unbalanced drum in it, six
 # degrees of freedom [DG21]. There is no liquid in this comparison, as the source measures and draws none
-# for this machine. Equations: `docs/theory/rotor.md`, from eq. 20 on.
+# for this machine. Equations: `docs/theory/rotors.md`, rotor, from eq. 20 on.
 
 # %% [markdown]
 # ## Who measured or printed what

@@ -70,11 +70,11 @@ case_table(excited)
 # * The first characteristic speed is printed from an expansion and lies below the exact one.
 # * The drag of the worked table belongs to another damping of the balls than the one printed beside it.
 # * The fitted function is within the 6 % claimed at the source's own example. Over its ranges it is not:
-#   `docs/exciter.md` compares it with 196 integrations, which take too long for this page.
+#   `docs/other_machines.md` compares it with 196 integrations, which take too long for this page.
 # * Damping of the supports does move the region of balancing; notebook 11 shows how.
 # * Both balls together at the third stuck speed are never stable: they drive one another apart. One of two is
 #   stable there. Chaos is a long transient. The motion at the resonance itself ends far above the source's
-#   critical speed, where its balls part: `docs/exciter.md`.
+#   critical speed, where its balls part: `docs/other_machines.md`.
 # * Liquid meets the same conditions as the balls, but it never balances to nothing: it acts as an added
 #   mass.
 #

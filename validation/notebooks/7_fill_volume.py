@@ -9,7 +9,7 @@
 #
 # `leblanc optimise` searches the volume of liquid that does best for an objective. Three comparisons: the
 # search against closed forms, a run-up in time against the figures of another code, and the objectives
-# against the sweep of a real machine. The search is described in `docs/theory/optimum.md`.
+# against the sweep of a real machine. The search is described in `docs/theory/liquid.md`.
 
 # %% [markdown]
 # ## Who measured or printed what
@@ -27,7 +27,7 @@
 # * Of the real machine neither the size of the ring nor the load or the place of the unbalance is known; its
 #   frequencies stand in its logs. The machine that is computed in its place,
 #   `validation/data/fill_sweep.toml`, is **assumed in most of its values**; five of them were drawn from wide
-#   ranges and fitted to two of the fills. The page `docs/fill_sweep.md` tells how.
+#   ranges and fitted to two of the fills. The page `docs/evidence.md` tells how.
 # * The other two machines are made up, `runup`, or partly so, `washing_machine`, both of the examples.
 
 # %%
@@ -57,7 +57,7 @@ case_table(optimum)
 # ## A run-up in time
 #
 # The peak on the way through the resonance depends on the friction that brings the liquid up to speed, the
-# end does not. `docs/runup.md` varies volume and friction: there the peak has a best volume of its own.
+# end does not. `docs/howto/runup.md` varies volume and friction: there the peak has a best volume of its own.
 
 # %%
 runup = runup_given.cases()

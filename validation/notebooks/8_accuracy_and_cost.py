@@ -8,7 +8,7 @@
 # # 8. Accuracy against cost
 #
 # Every liquid model and every resolution on every shipped scene: how wrong is it, and what does it cost?
-# `leblanc trade` measures that, and `docs/trade.md` says how. The question of this page is whether the
+# `leblanc trade` measures that, and `docs/accuracy.md` says how. The question of this page is whether the
 # default choice is a good one.
 
 # %% [markdown]

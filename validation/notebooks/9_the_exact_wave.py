@@ -8,7 +8,7 @@
 # # 9. The exact wave
 #
 # The layer on the wall of a drum without friction, at any depth and any height of its wave. The theory is in
-# `docs/theory/potential.md`, the liquid model "potential" in `docs/models/potential.md`.
+# `docs/theory/nonlinear.md`, the liquid model "potential" in `docs/models/potential.md`.
 #
 # * The liquid has no friction and was once at rest in the spinning drum. Seen from the drum its flow has a
 #   potential for ever, and its circulation round the wall is nought.
@@ -169,7 +169,7 @@ picture(sharp_figure(climbs[SHARP][-1], climbs[SHARP][4]))
 # %% [markdown]
 # ## How wrong the other models are
 #
-# Each of the cheaper models beside the exact wave, at two whirls. `docs/wave_errors.md` says how an error is
+# Each of the cheaper models beside the exact wave, at two whirls. `docs/accuracy.md` says how an error is
 # told from these maps before anything is solved.
 
 # %%
@@ -208,7 +208,7 @@ Table(
 )
 
 # %% [markdown]
-# The same wave with 8192 nodes, followed a little beyond that end for its shape; `docs/breaking.md` has the
+# The same wave with 8192 nodes, followed a little beyond that end for its shape; `docs/accuracy.md` has the
 # numbers.
 
 # %%

@@ -19,7 +19,7 @@ from leblanc.studies.run.study import run_scene
 from solvers.pypde import family_law
 from tests.leblanc.studies.test_compare import by
 
-PAGES = [Path(__file__).parents[3] / "docs" / name for name in ("architecture.md", "held.md")]
+PAGES = [Path(__file__).parents[3] / "docs" / name for name in ("project.md", "models/time_domain.md")]
 Seen = list[tuple[str, str, list[str]]]
 
 

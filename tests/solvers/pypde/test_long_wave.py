@@ -564,7 +564,7 @@ def test_bad_states_and_options_are_named() -> None:
 
 
 def test_the_example_of_the_theory_page(capsys: pytest.CaptureFixture[str]) -> None:
-    page = (Path(__file__).parents[3] / "docs" / "theory" / "long_wave.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "theory" / "nonlinear.md").read_text(encoding="utf-8")
     example = page.partition("```python\n")[2].partition("```")[0]
     exec(compile(example, "long_wave.md", "exec"), {})
     words = capsys.readouterr().out.split()

@@ -1,6 +1,6 @@
 """What radial baffles do to the slowest waves: a table over their number, depth and place.
 
-`python -m validation.cases.baffles.modes` prints the tables of docs/modes.md.
+`python -m validation.cases.baffles.modes` prints the tables of docs/howto/chamber.md.
 """
 
 from __future__ import annotations

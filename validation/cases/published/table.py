@@ -1,4 +1,4 @@
-"""Table of the statements, as docs/published.md has it: `python -m validation.cases.published.table`."""
+"""Table of the statements, as docs/evidence.md has it: `python -m validation.cases.published.table`."""
 
 from __future__ import annotations
 

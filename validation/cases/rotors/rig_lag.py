@@ -1,7 +1,7 @@
 """How fast a run-up may be to show the steady response: the horizontal rig at several rates.
 
 `python -m validation.cases.rotors.rig_lag --out docs/images` draws its figure and tables of
-docs/runup.md.
+docs/howto/runup.md.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """A motor that hangs at the resonance without liquid and gets through with it: the example `weak_motor`.
 
-`python -m validation.cases.rotors.weak_motor --out docs/images` draws the figure of docs/runup.md.
+`python -m validation.cases.rotors.weak_motor --out docs/images` draws the figure of docs/howto/runup.md.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """A run-up through a band of self-excited whirl and back, with the limit cycles that it follows.
 
-`python -m validation.cases.rotors.whirl_passage --out docs/images` draws the figure of docs/whirl.md
+`python -m validation.cases.rotors.whirl_passage --out docs/images` draws the figure of docs/howto/stability.md
 and prints its table.
 """
 
