@@ -53,3 +53,9 @@ def percent(value: float) -> str:
 def one_line(text: str) -> str:
     """Text without line breaks and control characters, which files and figures cannot carry."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
+def assumed_words(paths: Iterable[str]) -> str:
+    """How many values of a machine no source gives, for a caption; a report lists them."""
+    count = len(tuple(paths))
+    return f"{count} of its values" if count else "nothing"

@@ -292,21 +292,24 @@ def number(value: float) -> str:
 
 
 _ALL = 0.995  # relative error that leaves nothing sure
-_SURE = 1e-4  # relative error below which four digits say all
 
 
 def measured(value: float, error: float, unit: Unit) -> str:
-    """A value with its absolute error, both SI, no digit finer than the error: "7.95 ± 0.11".
+    """A value with its absolute error, both SI, no digit finer than that: "7.95 \N{PLUS-MINUS SIGN} 0.72".
 
-    The value alone where the error is unknown, as large as itself or smaller than its fourth digit.
+    The value alone where the error is unknown, as large as itself or less than its fourth digit.
     """
     size, doubt = value * unit.count, abs(error) * unit.count
-    if not math.isfinite(size) or not _SURE * abs(size) < doubt < _ALL * abs(size):
+    if not math.isfinite(size) or not 0.0 < doubt < _ALL * abs(size):
         return number(size)
-    places = 1 - math.floor(math.log10(doubt))  # two digits of the error
-    if places > 0:
-        return f"{size:.{places}f} ± {doubt:.{places}f}".replace("-", MINUS)
-    return f"{round(size, places):.0f} ± {round(doubt, places):.0f}".replace("-", MINUS)
+    # Two digits of the error, four of the value.
+    places = min(1 - math.floor(math.log10(doubt)), 3 - math.floor(math.log10(abs(size))))
+    shown = round(doubt, places)
+    if shown == 0.0:
+        return number(size)
+    digits = max(places, 0)
+    text = f"{round(size, places):.{digits}f} \N{PLUS-MINUS SIGN} {shown:.{digits}f}"
+    return text.replace("-", MINUS)
 
 
 _MOST = 1e50  # in SI; powers and products of what is larger overflow, and nothing in the world is

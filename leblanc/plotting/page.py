@@ -30,7 +30,7 @@ from matplotlib.ticker import MultipleLocator as MultipleLocator  # handed on: t
 from numpy.typing import ArrayLike
 
 from leblanc.core.files import path_of, require_writable, writing
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import LENGTH, MASS, RPM, VOLUME, unit_for, units_of
 from leblanc.studies.run.answer import RunAnswer
 from meshes.arrays import Complex
@@ -243,8 +243,8 @@ def lay_out(
     for axes in [axes for row in rows for axes in row]:
         readable(axes.xaxis)
         readable(axes.yaxis)
-        handles, labels = axes.get_legend_handles_labels()
-        entries = dict(zip(labels, handles, strict=True)) | entries
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
     # Curves and points before what marks ranges.
     order = sorted(entries, key=lambda label: _marks_range(entries[label]))
     listed, rest = order[:MOST_ENTRIES], order[MOST_ENTRIES:]
@@ -275,10 +275,10 @@ _BAR = 4.0  # points, from which on a line is a bar
 
 
 def _marks_range(handle: Any) -> bool:
-    """A patch or a bar, which marks a range, or a line across the whole panel."""
+    """A patch or a bar, neither a curve nor points nor a band between curves."""
     if not isinstance(handle, Line2D):
         return not isinstance(handle, Container | Collection)
-    return handle.get_linewidth() >= _BAR
+    return bool(handle.get_linewidth() >= _BAR)
 
 
 def look(handle: Any) -> str:
@@ -445,9 +445,8 @@ def _player() -> str:
 
 def caption(result: RunAnswer, text: str) -> Caption:
     """What the figure shows, the scene, the model and the values it assumes."""
-    count, model = len(result.assumed), ", ".join(result.models_used)
-    assumed = f" {count} of its values are assumed." if count else ""
-    return Caption(text, f"Scene: {one_line(result.name)}. Liquid model: {model}.{assumed}")
+    model, assumed = ", ".join(result.models_used), assumed_words(result.assumed)
+    return Caption(text, f"Scene: {one_line(result.name)}. Liquid model: {model}. Assumed: {assumed}.")
 
 
 def zero_of(result: RunAnswer) -> str:

@@ -54,12 +54,12 @@ class Peak:
 class Resonance:
     """A maximum of the amplitude over speed, as standards on rotors judge it."""
 
-    speed: Annotated[float, Q("rad s-1", "speed of the maximum")]
+    speed: Annotated[float, Q("rad s-1", "speed of a maximum", "over speed")]
     #: infinite where it has no bound
-    amplitude: Annotated[float, Q("m", "amplitude of the maximum")]
+    amplitude: Annotated[float, Q("m", "amplitude of a maximum", "over speed")]
     #: infinite without a bound, nan where the curve does not fall so far on both sides
     amplification_factor: Annotated[
-        float, Q("1", "amplification factor", "speed of the maximum over the width of its half-power band")
+        float, Q("1", "amplification factor", "speed of a maximum over the width of its half-power band")
     ]
     #: nan of a machine that works at no speed
     separation_margin: Annotated[

@@ -15,9 +15,9 @@
 # %% [markdown]
 # ## Who measured or printed what
 #
-# * Nothing was measured. The frequencies of small waves are exact (`docs/theory/liquid.md`, waves, eq. 7), and so
-#   are rates of decay and of steepening of small waves, by hand. For the rest two equations that were derived
-#   and discretised apart are held against each other: finite volumes in time, and Fourier modes.
+# * Nothing was measured. The frequencies of small waves are exact (`docs/theory/liquid.md`, waves, eq. 7),
+#   and so are rates of decay and of steepening of small waves, by hand. For the rest two equations that were
+#   derived and discretised apart are held against each other: finite volumes in time, and Fourier modes.
 # * A balancer by a forced KdV-Burgers equation is published [LN14]; its abstract was read. `leblanc validate
 #   kdv` has its statement.
 #

@@ -79,8 +79,8 @@ Table(("Liquid behind the unbalance, deg", *(f"{speed} rpm" for speed in measure
 # ## At rest
 #
 # Before the rig turns the water lies at the bottom of both chambers, and a run-up from rest begins with that
-# pool (`docs/theory/nonlinear.md`). Its shape follows from the volume alone, here summed up over the widths of a
-# circle. A shallow pool slides to and fro like a point on the wall, and the half full cylinder has the
+# pool (`docs/theory/nonlinear.md`). Its shape follows from the volume alone, here summed up over the widths
+# of a circle. A shallow pool slides to and fro like a point on the wall, and the half full cylinder has the
 # slowest frequency of the literature, `omega^2 R/g = 1.3557`.
 
 # %%

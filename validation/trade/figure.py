@@ -75,7 +75,7 @@ class _Box:
 
 def trade_figure(record: TradeRecord) -> Figure:
     """Error over CPU time, one panel for each question."""
-    heights, room = [2.75] * len(record.comparisons), {"top": 0.25, "between": 0.62, "lines": 8}
+    heights, room = [2.75] * len(record.comparisons), {"top": 0.25, "between": 0.62}
     with style():
         with page(heights, _caption(record), (), **room) as (figure, rows):
             for [axes], comparison in zip(rows, record.comparisons, strict=True):

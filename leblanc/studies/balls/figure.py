@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.plotting.curves import gapped
 from leblanc.plotting.page import (
@@ -105,7 +105,7 @@ def _draw_angles(axes: Any, result: BallsAnswer) -> None:
 
 
 def _caption(result: BallsAnswer, text: str) -> Caption:
-    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    assumed = assumed_words(result.assumed)
     count = sum(race.count for race in result.races)
     return Caption(
         text,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.plotting.curves import COLUMNS, Span, spans, speed_limits, thin, windows
 from leblanc.plotting.page import (
@@ -173,7 +173,7 @@ def _background(axes: Axes, found: CompareAnswer, limits: Span) -> None:
 
 def _caption(found: CompareAnswer) -> Caption:
     """What is shown, the scene, what did not answer, what is assumed."""
-    assumed = ", ".join(map(one_line, found.assumed)) or "nothing"
+    assumed = assumed_words(found.assumed)
     below = (
         f" Below, less that of {found.reference}, as a share of its largest amplitude."
         if len(found.results) > 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from leblanc.core.notes import EXACT, one_line
+from leblanc.core.notes import EXACT, assumed_words, one_line
 from leblanc.core.units import RPM
 from leblanc.plotting.curves import speed_limits
 from leblanc.plotting.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
@@ -52,7 +52,7 @@ def model_figure(answer: ExplainAnswer) -> Figure:
         add_rate_axis(axes)
         spans = "; ".join(f"{speeds_words(span)} rpm {span.model}" for span in answer.models) or "no liquid"
         figure.alt = f"Bars of the estimated error over speed, one for each range of a liquid model: {spans}."
-        assumed = ", ".join(map(one_line, answer.assumed)) or "nothing"
+        assumed = assumed_words(answer.assumed)
         origin = f"Scene: {one_line(answer.name)}. Assumed: {assumed}."
         largest = sorted(answer.models, key=lambda span: span.error if math.isfinite(span.error) else -1.0)
         worst = f"{error_words(largest[-1])} at most" if largest else "none without liquid"

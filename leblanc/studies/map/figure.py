@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import ML, MM, MM_PEAK, RPM, VOLUME, with_unit
 from leblanc.plotting.page import (
     RIGHT,
@@ -285,7 +285,7 @@ def _draw_branch(axes: Axes, rows: dict[str, Array], name: str, scale: float) ->
 
 def _caption(result: WhirlMap) -> Caption:
     """What is shown, the scene, the model, both dampings, notes."""
-    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    assumed = assumed_words(result.assumed)
     notes = " ".join(one_line(note.text) for note in result.notes)
     what = "all liquid together" if result.value is None else " and ".join(result.paths)
     return Caption(

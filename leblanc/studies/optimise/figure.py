@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fluid.temperature import CELSIUS
-from leblanc.core.notes import one_line, texts
+from leblanc.core.notes import assumed_words, one_line, texts
 from leblanc.core.units import DEGREE, LENGTH, ML, MM, MM_PEAK, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
 from leblanc.plotting.page import RIGHT, WIDTH, Caption, Figure, Frame, lay_out, number, style
 from leblanc.studies.optimise.answer import ConditionTable, OptimumAnswer, load_words
@@ -354,7 +354,7 @@ def _short(value: float) -> float:
 
 def _caption(result: OptimumAnswer, text: str, forms: bool = True) -> Caption:
     """What is shown, the scene, the objective."""
-    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    assumed = assumed_words(result.assumed)
     notes = " ".join(map(one_line, texts(result.notes)))
     vibration = result.meaning if result.unit == "m" else "the amplitude that is limited"
     what = result.constraints["vibration"].meaning if "vibration" in result.constraints else vibration

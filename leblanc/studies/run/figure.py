@@ -394,7 +394,7 @@ def _critical(result: RunAnswer) -> str:
     without = in_rpm(result.critical_speed_dry)
     if result.chamberless:
         return f"critical speed {without}"
-    return f"critical speed {number(result.critical_speed_wet * RPM)}, {without} without liquid"
+    return f"critical speed {in_rpm(result.critical_speed_wet)}, without liquid {without}"
 
 
 def background(axes: Axes, curves: Curves, result: RunAnswer, lines: list[Array]) -> None:

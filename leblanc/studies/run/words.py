@@ -96,7 +96,8 @@ def effect(result: RunAnswer) -> str:
     if not at or not way:
         return ""
     doubts, error = _wrong(result, top), error_at(result, top)
-    if highest is not None and error > abs(curve.amplitude[top] / curve.amplitude_dry[highest] - 1.0):
+    bare = math.nan if highest is None else float(np.nanmax(curve.amplitude_dry))
+    if error > abs(curve.amplitude[top] / bare - 1.0):
         doubts.append(f"error {_error_words(error)}")
     aside = f" (there {', '.join(doubts)})" if doubts else ""
     return f"With the liquid {at} at {in_rpm(float(result.speed[-1]))}, {way} on the way{aside}."
@@ -463,8 +464,12 @@ def checks(result: RunAnswer) -> list[Check]:
         parts = [rpm_bands(result.whirl.bands)] if result.whirl.bands else []
         lost = np.isnan(result.whirl.growth)
         parts += [f"not known at {ranges(r.speed, lost)}"] if lost.any() else []
-        met = result.whirl.inside(np.array(headline_speeds(result))).any()
-        grade = Grade.WARNING if met else Grade.NOTE if parts else Grade.NOTHING
+        at = np.array(headline_speeds(result))
+        grade = failing("", r.speed, lost).grade
+        if result.whirl.inside(at).any():
+            grade = Grade.WARNING
+        elif parts:
+            grade = max(grade, Grade.NOTE)
         found.append(Check("Self-excited whirl", ", ".join(parts) or "none", grade))
     infinite = np.isinf(result.curve.amplitude)
     if infinite.any():

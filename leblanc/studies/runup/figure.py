@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line, percent
+from leblanc.core.notes import assumed_words, one_line, percent
 from leblanc.core.units import LENGTH, MM, MM_PEAK, RPM, friction_words, with_unit
 from leblanc.plotting.curves import gapped, joined, lag_degrees, link, spans, widened
 from leblanc.plotting.page import (
@@ -400,7 +400,7 @@ def caption(result: RunupAnswer, text: str) -> Caption:
         size += f" by cells and steps, {result.handover_estimate:.1%} by the pool-annulus transition"
     if result.spread is not None:
         size += f"; by rounding alone {percent(result.spread.largest_spread)}"
-    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    assumed = assumed_words(result.assumed)
     stopped = "" if result.converged else f" Stopped: {one_line(result.reason)}."
     return Caption(
         f"{text}{stopped}",

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.plotting.page import (
     Caption,
@@ -126,7 +126,7 @@ def _caption(result: ExciterAnswer) -> Caption:
         "regime": "in the dual-frequency motion",
         "rest": "platform and balls at rest",
     }[result.start.kind]
-    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    assumed = assumed_words(result.assumed)
     return Caption(
         f"{three}Critical speed {critical}, started with {start}, {result.start.separation:g} rad apart. "
         f"Lines: lowest order in the balls' share of the mass ({numbers.smallness:.3g}); drag "

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import LENGTH, RPM, in_rpm, with_unit
 from leblanc.plotting.page import (
     Caption,
@@ -118,7 +118,7 @@ def _draw_unbalance(axes: Any, result: MagneticAnswer) -> None:
 
 
 def _caption(result: MagneticAnswer) -> Caption:
-    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    assumed = assumed_words(result.assumed)
     shown = "Deflection in a bearing by the unbalances alone, from the linear loop."
     if result.trials:
         shown = (
@@ -148,7 +148,7 @@ def force_figure(answer: MagneticExplanation) -> Figure:
             f"{with_unit(answer.reach, LENGTH)}."
         )
         text = "Force of both bearings and the motor on a rotor that does not lean."
-        assumed = ", ".join(map(one_line, answer.assumed)) or "nothing"
+        assumed = assumed_words(answer.assumed)
         origin = f"Scene: {one_line(answer.name)}. Assumed: {assumed}."
         frame = Frame(left=0.72, top=0.12, between=0.0, below=0.42)
         lay_out(figure, [[axes]], [2.4], frame, Caption(text, origin))

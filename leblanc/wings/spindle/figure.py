@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import MM
 from leblanc.plotting.page import Caption, Figure, Frame, lay_out, number, style
 from leblanc.wings.spindle.answer import PER_NEWTON, THEORIES, SpindleAnswer, hertz, sentence
@@ -114,5 +114,5 @@ def _caption(result: SpindleAnswer) -> Caption:
 
 
 def _origin(result: SpindleAnswer) -> str:
-    assumed = f"{len(result.assumed)} values or tables" if result.assumed else "nothing"
+    assumed = assumed_words(result.assumed)
     return f"Scene: {one_line(result.name)}. Assumed: {assumed}, all marked in the scene."

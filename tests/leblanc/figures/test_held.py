@@ -75,7 +75,9 @@ def test_limit_cycles_are_marked_and_their_whirl_drawn() -> None:
     np.testing.assert_array_equal(spin.get_xdata(), spin.get_ydata())
     low, high = figure.axes[1].get_ylim()
     assert low <= 0.0 and high > 2000.0
-    assert "with liquid, limit cycle" in [text.get_text() for text in figure.legends[0].get_texts()]
+    listed = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert len(listed) == 5 and listed[0] == "least to largest over time"
+    assert "with liquid, limit cycle" in figure.caption.shown.partition("Besides: ")[2]
     # A limit cycle is no unstable answer: what is drawn so begins and ends beside the speed that was lost.
     unstable = line(figure, "with liquid, unstable")
     assert np.nanmax(unstable.get_xdata()[~np.isnan(unstable.get_ydata())]) < 400.0

@@ -100,7 +100,7 @@ def test_the_plane_of_the_amplitude_is_named() -> None:
     FigureCanvasAgg(figure)
     figure.draw_without_rendering()
     assert any(axes.get_ylabel() == "Vibration at chamber 1 (mm 0-p)" for axes in figure.axes)
-    caption = " ".join(text.get_text() for text in reversed(figure.texts))
+    caption = str(figure.caption)
     assert "in the plane of chamber 1" in caption
     assert front_figure(result).axes[0].get_ylabel() == "Vibration at chamber 1 (mm 0-p)"
     assert front_figure(two_chambers()).axes[0].get_ylabel() == "Vibration (mm 0-p)"

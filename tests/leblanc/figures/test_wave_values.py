@@ -217,8 +217,7 @@ def test_caption_converts() -> None:
 
 
 def caption(figure) -> str:
-    lines = " ".join(text.get_text() for text in reversed(figure.texts))
-    return lines.replace("\N{NO-BREAK SPACE}", " ")
+    return str(figure.caption).replace("\N{NO-BREAK SPACE}", " ")
 
 
 def test_a_layer_deeper_than_its_room_is_cut_at_the_inner_wall_and_said_to_be() -> None:

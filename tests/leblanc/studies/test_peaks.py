@@ -421,18 +421,18 @@ def test_damped_beyond_a_top() -> None:
 
 
 @kills("leblanc.core.units:measured", "1 - math.floor", "2 - math.floor")
-@pytest.mark.parametrize(
-    ("value", "error", "shown"),
-    [
+@kills("leblanc.core.units:measured", "3 - math.floor", "5 - math.floor")
+def test_no_digit_is_finer_than_the_error() -> None:
+    cases = (
         (7.952e-3, 0.72e-3, "7.95 \N{PLUS-MINUS SIGN} 0.72"),
         (5.5635e-3, 2.0e-3, "5.6 \N{PLUS-MINUS SIGN} 2.0"),
         (0.2863, 0.012, "286 \N{PLUS-MINUS SIGN} 12"),
         (12.863, 0.37, "12860 \N{PLUS-MINUS SIGN} 370"),
-        (2.8634e-3, 1e-8, "2.863"),  # four digits say all
+        (1.0855e-3, 1.9e-6, "1.086 \N{PLUS-MINUS SIGN} 0.002"),  # four digits at most
+        (2.8634e-3, 1e-8, "2.863"),  # they say all
         (2.8634e-3, 3e-3, "2.863"),  # nothing is sure: said in words
         (2.8634e-3, math.nan, "2.863"),
         (math.inf, 1.0, "infinite"),
-    ],
-)
-def test_no_digit_is_finer_than_the_error(value: float, error: float, shown: str) -> None:
-    assert measured(value, error, Unit("mm", 1e3)) == shown
+    )
+    for value, error, shown in cases:
+        assert measured(value, error, Unit("mm", 1e3)) == shown

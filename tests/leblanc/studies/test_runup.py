@@ -518,7 +518,7 @@ def test_figures(record: RunupAnswer) -> None:
     assert up.get_ydata().max() == pytest.approx(peak, rel=1e-14)
     assert back.get_ydata()[1:].max() == pytest.approx(peak_back, rel=1e-14)
     assert np.allclose(up.get_xdata()[[0, -1]], [20.0 / RPM, 40.0 / RPM])
-    told = " ".join(text.get_text() for text in reversed(speed.texts))
+    told = str(speed.caption)
     assert "16 cells" in told and "linear, 3 1/s" in told and "Error of the amplitude" in told
 
 

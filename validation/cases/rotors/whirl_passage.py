@@ -1,7 +1,7 @@
 """A run-up through a band of self-excited whirl and back, with the limit cycles that it follows.
 
-`python -m validation.cases.rotors.whirl_passage --out docs/images` draws the figure of docs/howto/stability.md
-and prints its table.
+`python -m validation.cases.rotors.whirl_passage --out docs/images` draws the figure of
+docs/howto/stability.md and prints its table.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import RPM
 from leblanc.plotting.curves import speed_limits
 from leblanc.plotting.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
@@ -44,7 +44,7 @@ def numbers_figure(answer: BallExplainAnswer) -> Figure:
         axes.xaxis.set_major_formatter(number)
         axes.yaxis.set_major_formatter(number)
         add_rate_axis(axes)
-        assumed = ", ".join(map(one_line, answer.assumed)) or "nothing"
+        assumed = assumed_words(answer.assumed)
         origin = f"Scene: {one_line(answer.name)}. Assumed: {assumed}."
         lay_out(figure, [[axes]], [2.2], FRAME, Caption(figure.alt, origin))
     return figure

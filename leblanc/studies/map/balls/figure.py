@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import RPM
 from leblanc.plotting.page import (
     Caption,
@@ -167,7 +167,7 @@ def _drawn(line: Array, shape: tuple[int, int]) -> Flags:
 
 
 def _caption(result: BallChart) -> Caption:
-    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    assumed = assumed_words(result.assumed)
     varied = ", ".join(result.paths)
     return Caption(
         f"Stability of {STATES[result.state]} by the roots of small motions, over speed and {varied}. "

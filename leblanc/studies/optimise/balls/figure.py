@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.notes import one_line
+from leblanc.core.notes import assumed_words, one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.plotting.curves import gapped
 from leblanc.plotting.page import Caption, Figure, Frame, lay_out, number, style
@@ -119,7 +119,7 @@ def _draw_speeds(axes: Any, result: BallDesignAnswer) -> None:
 
 
 def _caption(result: BallDesignAnswer) -> Caption:
-    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    assumed = assumed_words(result.assumed)
     designs = (
         f"Above, designs that were evaluated: {result.meaning}, and the decay of small motions; below, "
         f"the best "
