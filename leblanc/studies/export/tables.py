@@ -10,9 +10,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from leblanc.core.answer import Answer
 from leblanc.core.files import writing
-from leblanc.core.netcdf import Variable
+from leblanc.core.netcdf import NamedArrays, Variable
 from leblanc.scene.scene import Scene
 from leblanc.studies.run import run
 from leblanc.studies.run.answer import RunAnswer
@@ -20,11 +22,12 @@ from leblanc.studies.runup import runup
 from leblanc.studies.runup.answer import RunupAnswer
 from meshes.errors import InputError
 
-Cell = str | float
+Cell = str | float  # whole numbers among the latter
 _GRIDS = ("speed", "time")  # what most is over, before any other dimension
 # The same once more: all speeds of the curve are among the speeds.
 _AGAIN = ("refined_speed", "curve_speed")
 _SHEET = 31  # letters of its name
+_ROWS = 1_048_576  # of a sheet at most
 _PAIR = ("amplitude", "amplitude_dry")
 
 
@@ -122,6 +125,57 @@ def _values(name: str, text: str, single: dict[str, Variable]) -> Table:
     return Table(name, text, tuple(Column(head, "", column) for head, column in columns))
 
 
+def sample_tables(arrays: NamedArrays) -> tuple[Table, ...]:
+    """Samples of a sweep, a row each, and their curves, a row for each sample and speed."""
+    every = {**arrays.coords, **arrays.variables}
+    alone = {name: one for name, one in every.items() if one.dims == ("sample",)}
+    # What varies first: its names are paths.
+    names = sorted(alone, key=lambda name: ("." not in name, list(alone).index(name)))
+    count = next(iter(alone.values())).values.shape[0]
+    number = Column("sample", "", list(range(count)))
+    found = [Table("samples", "samples", (number, *(_column(name, alone[name]) for name in names)))]
+    curves = {name: one for name, one in every.items() if one.dims == ("sample", "speed")}
+    if curves:
+        over = next(iter(curves.values())).values.shape[1]
+        rows = Column("sample", "", [k for k in range(count) for _ in range(over)])
+        if "speed" in every and every["speed"].dims == ("speed",):
+            each = every["speed"]
+            repeated = Variable(("sample", "speed"), np.tile(each.values, (count, 1)), each.attrs)
+            curves = {"speed": repeated} | curves
+        columns = [_column(name, one) for name, one in curves.items()]
+        first = sorted(columns, key=lambda column: column.name != "speed")
+        found.append(Table("curves", "curves over speed", (rows, *first)))
+    return tuple(found)
+
+
+def _column(name: str, one: Variable) -> Column:
+    unit = one.attrs.get("units", "1")
+    return Column(name, "" if unit == "1" else unit, one.values.ravel().tolist())
+
+
+def write_samples(arrays: NamedArrays, folder: Path, to: str, decimal: str) -> None:
+    """Tables of a sweep's samples as CSV files or as a workbook.
+
+    Parameters
+    ----------
+    folder : where they go
+    to : csv or xlsx
+    decimal : point or comma, of CSV
+    """
+    if to not in ("csv", "xlsx"):
+        raise InputError("to", to, "csv or xlsx")
+    if decimal not in ("point", "comma") or (to == "xlsx" and decimal != "point"):
+        raise InputError("decimal", decimal, "point, or comma for csv")
+    found = sample_tables(arrays)
+    if to == "csv":
+        write_csv(found, folder, decimal)
+        return
+    most = max(len(table.columns[0].values) for table in found)
+    if most >= _ROWS:
+        raise InputError("to", to, f"csv: a sheet has {_ROWS} rows, these tables {most + 1}")
+    write_xlsx(found, folder / "sweep.xlsx")
+
+
 def write_csv(found: Sequence[Table], folder: Path, decimal: str) -> None:
     """A file a table; numbers with all their digits, nothing where there is none."""
     comma = decimal == "comma"
@@ -166,9 +220,18 @@ def write_xlsx(found: Sequence[Table], path: Path) -> None:
                 for row, cell in enumerate(column.values, 1):
                     if isinstance(cell, str):
                         sheet.write_string(row, k, cell)
+                    elif isinstance(cell, int):
+                        sheet.write_number(row, k, cell)
                     elif math.isfinite(cell):
                         sheet.write_number(row, k, _Exact(cell))
-        drawn = next((table for table in found if table.column(_PAIR[0]) is not None), None)
+        drawn = next(
+            (
+                table
+                for table in found
+                if table.columns[0].name in _GRIDS and table.column(_PAIR[0]) is not None
+            ),
+            None,
+        )
         if drawn is not None:
             _chart(book, drawn, names[drawn.name])
 

@@ -219,10 +219,9 @@ def _draw_section(axes: Axes, result: OptimumAnswer, k: int) -> None:
         )
     _marks(axes, result, k)
     top = FAR * max(result.vibration_baseline, result.vibration) * MM
-    low = min(float(vibration.min(initial=math.inf)), result.vibration * MM)
-    high = min(float(vibration.max(initial=0.0)), top)
-    room = 0.06 * max(high - low, 1e-3 * high)
-    axes.set_ylim(low - room, high + room)
+    # From zero, so that a gain is seen as large as it is.
+    high = max(min(float(vibration.max(initial=0.0)), top), result.vibration_baseline * MM)
+    axes.set_ylim(0.0, 1.08 * high or 1.0)
     if math.isfinite(least):
         _symlog(axes, "x", least, (-0.15 * least, 1.15 * result.chambers[k].capacity * ML))
     axes.minorticks_off()

@@ -11,7 +11,7 @@ from leblanc.core.question import STUDY, Option, ask, called
 if TYPE_CHECKING:
     from leblanc.studies.sweep.answer import SweepAnswer
 
-FILES = ("sweep.html", "sweep.nc")
+FILES = ("sweep.html", "sweep.nc", "samples.csv", "curves.csv", "sweep.xlsx")
 
 
 def sweep(
@@ -47,7 +47,11 @@ def present(
     emulate: Annotated[
         bool, Option(("--emulate",)), "Fit emulators to the outputs, with their errors on unseen samples."
     ] = False,
+    to: Annotated[str | None, "csv or xlsx: tables of samples and of their curves as well."] = None,
+    decimal: Annotated[str, "point, or comma with semicolons between the columns (csv)."] = "point",
 ) -> SweepAnswer:
-    """What the command alone is asked for: a copy of the store, emulators."""
-    shown: SweepAnswer = called("leblanc.studies.sweep.study:present")(answer, netcdf, emulate)
+    """What the command alone is asked for: a copy of the store, emulators, tables."""
+    shown: SweepAnswer = called("leblanc.studies.sweep.study:present")(
+        answer, netcdf, emulate, to, decimal
+    )
     return shown

@@ -53,8 +53,14 @@ def answer_sweep(
     return summarise(run_sweep(study, folder, workers, scheduler, fresh), study)
 
 
-def present(answer: SweepAnswer, netcdf: bool, emulate: bool) -> SweepAnswer:
-    """The answer with a copy of its store, and with emulators of its outputs."""
+def present(
+    answer: SweepAnswer, netcdf: bool, emulate: bool, to: str | None = None, decimal: str = "point"
+) -> SweepAnswer:
+    """The answer with a copy of its store, with emulators of its outputs, and tables beside the store."""
+    if to is not None:
+        from leblanc.studies.export.tables import write_samples
+
+        write_samples(answer.named_arrays(), answer.store.parent, to, decimal)
     if not emulate:
         return replace(answer, netcdf=netcdf)
     from leblanc.studies.sweep.emulator import emulated_outputs

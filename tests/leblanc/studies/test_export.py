@@ -12,10 +12,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.io import loadmat
 
 import leblanc as lb
 from leblanc.cli import main
+from leblanc.scene.examples import example_path
 from leblanc.scene.scene import Scene
 from leblanc.studies.export.cosimulation import Cosimulation, Drive, Refusal, stepped_model
 from meshes.errors import InputError
@@ -392,3 +394,43 @@ def test_an_fmu_needs_a_run_up(tmp_path: Path) -> None:
     with pytest.raises(InputError) as refused:
         lb.export(lb.example("blood_pump"), to="fmu", out=tmp_path)
     assert refused.value.field in ("rotor.kind", "runup")
+
+
+@pytest.mark.parametrize("to", ["csv", "xlsx"])
+def test_samples_of_a_sweep_as_tables(to: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A row a sample with what varies first, a row for each sample and speed; the numbers of the store."""
+    study = tmp_path / "study.toml"
+    study.write_text(
+        f'scene = "{example_path("runup")}"\nmethod = "grid"\n[vary]\n'
+        '"rotor.mass" = { linspace = ["29 kg", "31 kg", 3] }\n',
+        encoding="utf-8",
+    )
+    out = tmp_path / "out"
+    assert main(["sweep", str(study), "--out", str(out), "--workers", "0", "--to", to]) == 0
+    capsys.readouterr()
+    data = xr.open_zarr(out / "sweep.zarr", consolidated=False)
+    if to == "csv":
+        columns = [table(out / f"{name}.csv") for name in ("samples", "curves")]
+        samples, curves = (
+            [dict(zip(one, row, strict=True)) for row in zip(*one.values(), strict=True)] for one in columns
+        )
+    else:
+        pytest.importorskip("xlsxwriter")
+        found = sheets(out / "sweep.xlsx")
+        samples, curves = (
+            [dict(zip(found[name][0], row, strict=False)) for row in found[name][1:]]
+            for name in ("samples", "curves")
+        )
+    assert list(samples[0])[:2] == ["sample", "rotor.mass [kg]"]
+    assert [float(row["rotor.mass [kg]"]) for row in samples] == [29.0, 30.0, 31.0]
+    assert [float(row["last_amplitude [m]"]) for row in samples] == data["last_amplitude"].values.tolist()
+    count = lb.example("runup").speeds.count
+    assert len(curves) == 3 * count and [int(row["sample"]) for row in curves[count - 1 : count + 1]] == [
+        0,
+        1,
+    ]
+    sizes = np.array([float(row["amplitude [m]"]) for row in curves])
+    np.testing.assert_array_equal(sizes, data["amplitude"].values.ravel())
+    if to == "csv":
+        assert main(["sweep", str(study), "--out", str(out), "--workers", "0", "--to", "ods"]) == 2
+        assert "csv or xlsx" in capsys.readouterr().err
