@@ -32,12 +32,12 @@ def sections(out: Path) -> None:
     """Six sections: rings with baffles, a square with a shaft, a compartment, an oval chamber."""
     coarse = {"segments": 32, "layers": 3, "tip_size": 0.005, "growth": 2.0}
     panels = [
-        ("attached, ending in the liquid", ring(0.2, 0.14, baffles=Baffles(5, 0.17), **coarse)),
-        ("gap at the wall, through the surface", ring(0.2, 0.14, baffles=Baffles(5, 0.0, 0.015), **coarse)),
+        ("baffles on the wall", ring(0.2, 0.14, baffles=Baffles(5, 0.17), **coarse)),
+        ("gap at the wall", ring(0.2, 0.14, baffles=Baffles(5, 0.0, 0.015), **coarse)),
         ("standing free", ring(0.2, 0.14, baffles=Baffles(5, 0.16, 0.015), **coarse)),
-        ("oval chamber with a shaft", liquid_outside(oval(), 0.11, surface_size=0.02)),
-        ("full baffles: one compartment", compartment(Baffles(5, first_angle=0.3), 0, 0.2, 0.05, 12)),
-        ("drum, finer towards the wall", liquid_outside(disc(0.2, 32, order=2), 0.12, wall_size=0.01)),
+        ("oval, with a shaft", liquid_outside(oval(), 0.11, surface_size=0.02)),
+        ("one compartment", compartment(Baffles(5, first_angle=0.3), 0, 0.2, 0.05, 12)),
+        ("finer at the wall", liquid_outside(disc(0.2, 32, order=2), 0.12, wall_size=0.01)),
     ]
     plotter = _plotter((2, 3), (1020, 720))
     for k, (title, mesh) in enumerate(panels):

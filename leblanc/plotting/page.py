@@ -248,6 +248,8 @@ def lay_out(
     # Curves and points before what marks ranges.
     order = sorted(entries, key=lambda label: _marks_range(entries[label]))
     listed, rest = order[:MOST_ENTRIES], order[MOST_ENTRIES:]
+    if rest and (panels := _by_panel(rows, order)):
+        listed, rest = [], _own_legends(panels)
     text = Caption(caption) if isinstance(caption, str) else caption
     besides = "; ".join(f"{look(entries[label])}, {label}" for label in rest)
     figure.caption = replace(text, shown=f"{text.shown} Besides: {besides}.") if rest else text
@@ -264,7 +266,29 @@ def lay_out(
             axes.set_position((left / WIDTH, bottom / total, width / WIDTH, height / total))
         above += height + gap
     place = {"loc": "lower center", "bbox_to_anchor": (0.5, MARGIN / total), "borderaxespad": 0.0}
-    figure.legend([entries[label] for label in listed], listed, ncols=columns, borderpad=0.0, **place)
+    if listed:
+        figure.legend([entries[label] for label in listed], listed, ncols=columns, borderpad=0.0, **place)
+
+
+def _by_panel(rows: list[list[Axes]], order: list[str]) -> list[tuple[Axes, dict[str, Any]]]:
+    """Entries that each panel has before the others; nothing where a single one has them all."""
+    found: list[tuple[Axes, dict[str, Any]]] = []
+    for axes in [axes for row in rows for axes in row]:
+        handles, labels = axes.get_legend_handles_labels()
+        mine = dict(zip(labels, handles, strict=True))
+        known = {label for _, others in found for label in others}
+        own = {label: mine[label] for label in order if label in mine and label not in known}
+        found += [(axes, own)] if own else []
+    return found if len(found) > 1 else []
+
+
+def _own_legends(panels: list[tuple[Axes, dict[str, Any]]]) -> list[str]:
+    """A legend in each panel of five entries at most; those that have no room."""
+    look = {"fontsize": 6.5, "framealpha": 0.85, "borderpad": 0.3, "handlelength": 1.8, "loc": "best"}
+    for axes, own in panels:
+        few = list(own)[:MOST_ENTRIES]
+        axes.legend([own[label] for label in few], few, ncols=1 if len(few) < 3 else 2, **look)
+    return [label for _, own in panels for label in list(own)[MOST_ENTRIES:]]
 
 
 _COLOURS = {

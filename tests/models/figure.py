@@ -17,7 +17,7 @@ _LOOKS = {
     "horizontal_rig": {"color": "#D55E00", "marker": "s", "markerfacecolor": "white"},
 }
 _PLACE = {"runup": (0, 6, "center"), "horizontal_rig": (0, -12, "center")}  # of a name by its point, points
-_NEAR = 1.1  # times a value: nearer points share a name
+_NEAR = 2.0, 1.2  # times a time, an error: points nearer in both share a name
 
 
 def models_figure() -> Figure:
@@ -57,7 +57,8 @@ def _draw(axes: Any, table: ModelTable) -> None:
             near[0].append(row)
         else:
             groups.append([row])
-    named = [(", ".join(row.name for row in group), group[0]) for group in groups]
+    by_time = [sorted(group, key=lambda row: row.time) for group in groups]
+    named = [(", ".join(row.name for row in group), group[0]) for group in by_time]
     first, *_, last = waves
     named.append((f"{first.model}, {first.cells} to {last.cells} cells", waves[len(waves) // 2]))
     away, above, side = _PLACE[table.scene]
@@ -76,7 +77,7 @@ def _points(rows: list[ModelRow]) -> tuple[list[float], list[float]]:
 def _close(first: ModelRow, second: ModelRow) -> bool:
     """Points so near to each other that their names would overlap."""
     ratios = (first.time / second.time, first.error / second.error)
-    return all(1.0 / _NEAR < ratio < _NEAR for ratio in ratios)
+    return all(1.0 / near < ratio < near for near, ratio in zip(_NEAR, ratios, strict=True))
 
 
 def alternative(tables: tuple[ModelTable, ...]) -> str:

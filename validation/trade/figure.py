@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 PICTURED = ("runup", "horizontal_rig")  # scenes whose kept comparison is drawn
 Axes = Any  # matplotlib's, which no module that only draws imports
 
-LABEL = 6.5  # points, of a label's letters
+LABEL = 7.5  # points, of a label's letters
 _REACH = 18.0  # points, farthest that a label is put from its marker
 _FLOOR = 1e-13  # of the errors drawn, where the best answer is exact
 FRONT, BELOW = "0.55", "0.92"

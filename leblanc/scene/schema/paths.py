@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
+from itertools import pairwise
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic.fields import FieldInfo
@@ -58,6 +59,26 @@ def place_of(table: Mapping[str, Any], keys: Keys, tables: Mapping[tuple[str, ..
 def keys_of(path: str) -> Keys:
     """Keys along a path such as "chambers.0.volume", numbers of entries as such."""
     return tuple(int(key) if key.isdecimal() and len(key) < 7 else key for key in path.split("."))
+
+
+# What holds several of a kind, and what one of them is called.
+_ONE = {"chambers": "chamber", "supports": "support", "unbalances": "unbalance", "springs": "spring"}
+_ONE |= {"dampers": "damper", "points": "point", "bearings": "bearing"}
+_WORDS = {"drag": "race damping", "ball_mass": "mass of a ball"}
+
+
+def path_words(*paths: str) -> str:
+    """The number at paths for an axis or a caption: "rotor.supports.0.damping" is "damping of support 1"."""
+    keys, more = keys_of(paths[0]), f" and {len(paths) - 1} more" if len(paths) > 1 else ""
+    name = _WORDS.get(str(keys[-1]), str(keys[-1]).replace("_", " "))
+    places = [
+        f"{_ONE.get(str(above), str(above))} {key + 1}"
+        for above, key in pairwise(keys)
+        if isinstance(key, int)
+    ]
+    # A machine with one chamber or race has no other to tell it from.
+    places = [place for place in places if place != "chamber 1"]
+    return (f"{name} of {places[-1]}" if places and not isinstance(keys[-1], int) else name) + more
 
 
 def rule_at(root: type[Part], table: Mapping[str, Any], path: str, command: str = "run") -> Any:

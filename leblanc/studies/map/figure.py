@@ -20,6 +20,7 @@ from leblanc.plotting.page import (
     part_of,
     style,
 )
+from leblanc.scene.schema.paths import path_words
 from leblanc.studies.map.answer import WhirlMap, alt, cycles_alt
 from meshes.arrays import Array
 
@@ -73,7 +74,8 @@ def _second(result: WhirlMap) -> tuple[str, Array]:
     """Label of the second axis, and its values as drawn."""
     if result.value is None:
         return "Liquid (ml)", result.volume * ML
-    name, values, unit = result.second
+    _, values, unit = result.second
+    name = path_words(*result.paths)
     return f"{name} ({unit.name})" if unit.name else name, values * unit.count
 
 

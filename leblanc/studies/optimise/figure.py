@@ -343,6 +343,8 @@ def _draw_front(axes: Axes, result: OptimumAnswer) -> None:
         least = float(wet.min())
         _symlog(axes, "x", least, (-0.5 * least, 1.3 * float(wet.max())))
     _numbered(axes)
+    # From zero, so that a gain is seen as large as it is.
+    axes.set_ylim(0.0, 1.08 * max(float(vibration.max(initial=0.0)), result.vibration_baseline * MM) or 1.0)
     axes.set_xlabel("Liquid (g)")
     axes.set_ylabel(_vibration_label(result))
 

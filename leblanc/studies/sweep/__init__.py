@@ -51,7 +51,5 @@ def present(
     decimal: Annotated[str, "point, or comma with semicolons between the columns (csv)."] = "point",
 ) -> SweepAnswer:
     """What the command alone is asked for: a copy of the store, emulators, tables."""
-    shown: SweepAnswer = called("leblanc.studies.sweep.study:present")(
-        answer, netcdf, emulate, to, decimal
-    )
+    shown: SweepAnswer = called("leblanc.studies.sweep.study:present")(answer, netcdf, emulate, to, decimal)
     return shown

@@ -166,7 +166,7 @@ def rings_figure() -> Figure:
                     look |= {"linestyle": (0, (5, 1.5)), "markerfacecolor": "white"}
                 axes.plot(COUNTS, sizes, label=f"{kind}, {label}", **look)
         axes.axhline(1.0, color="0.45", linewidth=0.8)
-        axes.set(xticks=COUNTS, xlim=(0.8, 4.2), ylim=(0.6, 1.2))
+        axes.set(xticks=COUNTS, xlim=(0.8, 4.2), ylim=(0.0, 1.2))
         axes.set_xlabel("Number of rings that share one litre")
         axes.set_ylabel("Deflection over that without liquid (\N{EN DASH})")
     return figure

@@ -359,6 +359,8 @@ def drum_figure() -> Figure:
             (row[0] for row in rows), ("Rotation (rad/s)", "Torque (N m/m)", "Height (mm)"), strict=True
         ):
             axes.set_ylabel(label)
+        for axes, title in zip(rows[0], ("from rest", "a ring that falls"), strict=True):
+            axes.set_title(title, fontsize=8)
     return figure
 
 

@@ -180,7 +180,7 @@ def _draw_errors(axes: Any, lags: Sequence[Lag]) -> None:
     axes.loglog(rates, beyond, markerfacecolor="white", linewidth=1.1, label="error beyond it", **look)
     guide = {"color": "0.4", "linewidth": 1.0, "linestyle": (0, (6, 2))}
     axes.loglog(rates, 100.0 * errors[-1] * rates / rates[-1], **guide, label="in proportion to the rate")
-    axes.set_xticks(rates)
+    axes.set_xticks(rates, [f"{rate:g}" for rate in rates])
     axes.set_yticks([1.0, 3.0, 10.0, 30.0, 100.0], ["1", "3", "10", "30", "100"])
     axes.minorticks_off()
     axes.set(xlabel="Rate (rad/s\N{SUPERSCRIPT TWO})", ylabel="Error (%)")

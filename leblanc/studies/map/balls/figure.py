@@ -19,6 +19,7 @@ from leblanc.plotting.page import (
     number,
     style,
 )
+from leblanc.scene.schema.paths import path_words
 from leblanc.studies.map.balls.answer import CURVES, STATES, BallChart, sentence
 from meshes.arrays import Array, Flags, Indices
 
@@ -68,7 +69,7 @@ def chart_figure(result: BallChart) -> Figure:
         axes.xaxis.set_major_formatter(number)
         axes.yaxis.set_major_formatter(number)
         axes.set_xlabel("Speed (rpm)")
-        axes.set_ylabel(f"{result.varied} ({unit.name or chr(0x2013)})")
+        axes.set_ylabel(f"{path_words(*result.paths)} ({unit.name or chr(0x2013)})")
         add_rate_axis(axes)
         lay_out(figure, [[axes]], [PANEL], FRAME, _caption(result))
     return figure
