@@ -126,6 +126,17 @@ def test_the_tally_of_the_readme_is_that_of_validate() -> None:
     each = [verdicts[name] for name in ("agrees", "erratum", "trend", "differs")]
     assert [int(number) for number in said.groups()] == [verdicts.total(), *each]
     assert f"{verdicts.total()} published numbers and statements, of which {each[-1]} differ" in text
+    front, evidence = (
+        (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") for name in ("index", "evidence")
+    )
+    said = re.search(
+        r"(\d+) published numbers.* (\d+) agree, (\d+) .* (\d+) are trends that\nhold, and (\d+) differ",
+        front,
+        re.DOTALL,
+    )
+    assert said is not None
+    assert [int(number) for number in said.groups()] == [verdicts.total(), *each]
+    assert all(str(number) in evidence for number in (verdicts.total(), *each))
 
 
 @pytest.mark.slow

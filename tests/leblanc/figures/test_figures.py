@@ -323,3 +323,29 @@ def test_right_angle_between_unbalance_and_deflection_at_resonance():
 
 def test_a_tick_of_zero_has_no_sign() -> None:
     assert [number(value) for value in (-0.0, 0.0, -2.5)] == ["0", "0", "\N{MINUS SIGN}2.5"]
+
+
+def test_a_legend_has_five_entries_and_the_caption_the_rest():
+    """In one panel the first five; panels with entries of their own have legends of their own."""
+    from leblanc.plotting import page
+
+    def drawn(rows: int, names: list[list[str]]) -> page.Figure:
+        figure = page.Figure()
+        axes = [[figure.add_axes((0, 0, 1, 1), label=str(k))] for k in range(rows)]
+        for (one,), labels in zip(axes, names, strict=True):
+            one.axvspan(0.0, 0.1, color="0.9", label=f"range {labels[0]}")
+            for k, label in enumerate(labels):
+                one.plot([0.0, 1.0], [k, k], color="#D55E00", linestyle="--", label=label)
+        frame = page.Frame(left=0.7, top=0.4, between=0.1, below=0.4)
+        page.lay_out(figure, axes, [1.0] * rows, frame, "What is shown.")
+        return figure
+
+    one = drawn(1, [list("abcdef")])
+    assert legend(one) == list("abcde")
+    assert one.caption.shown == "What is shown. Besides: red, dashed, f; shaded, range a."
+    two = drawn(2, [list("abc"), list("cdef")])
+    assert not two.legends and two.caption.shown == "What is shown."
+    own = [[text.get_text() for text in axes.get_legend().get_texts()] for axes in two.axes]
+    assert own == [["a", "b", "c", "range a"], ["d", "e", "f", "range c"]]
+    again = drawn(2, [list("abcdef"), list("abcdef")])
+    assert legend(again) == list("abcde") and all(axes.get_legend() is None for axes in again.axes)

@@ -14,6 +14,7 @@ from leblanc.cli import main
 from leblanc.scene.examples import example_names, example_path
 from leblanc.scene.scene import Scene
 from leblanc.scene.schema.editor import machine_schema
+from leblanc.scene.schema.paths import path_words
 
 SCENES = [name for name in example_names() if not name.startswith("studies/")]
 
@@ -72,3 +73,18 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
         == machine_schema(Scene)
     )
     assert "#:schema" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("paths", "words"),
+    [
+        (("rotor.damping_ratio",), "damping ratio"),
+        (("chambers.0.drag",), "race damping"),
+        (("chambers.1.drag",), "race damping of chamber 2"),
+        (("rotor.supports.0.damping",), "damping of support 1"),
+        (("rotor.supports.0.damping", "rotor.supports.1.damping"), "damping of support 1 and 1 more"),
+        (("rotor.mass",), "mass"),
+    ],
+)
+def test_paths_are_words_on_axes(paths: tuple[str, ...], words: str) -> None:
+    assert path_words(*paths) == words
