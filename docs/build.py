@@ -77,7 +77,7 @@ def _notebooks(target: Path, quick: bool) -> None:
     """Bring the executed notebooks; those older than their text or what they call are executed first."""
     executed = ROOT / "out" / "notebooks"
     texts = sorted(NOTEBOOKS.glob("[0-9]*.py"))
-    called = [path for path in NOTEBOOKS.parent.rglob("*.py") if path.parent != NOTEBOOKS]
+    called = [path for path in NOTEBOOKS.parent.rglob("*.py") if NOTEBOOKS not in path.parents]
     stale = [
         text
         for text in texts
