@@ -178,5 +178,5 @@ print(
     f"The {candidates['as filled'] / ML:.0f} ml of the file gain {100.0 * gains['as filled']:.1f} %, and "
     f"a small whirl grows in {100.0 * growing['as filled']:.0f} % of the machines, with the robust fill in "
     f"{100.0 * growing['robust']:.0f} %.\n"
-    "The ring cannot cure the laundry: spread it better, and its share of the variance shrinks first."
+    "The ring cannot cure the laundry: what spreads it better counts for more than any volume."
 )
