@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
-    from solvers.liquid_model import LiquidModel
+    from solvers.liquid_model import LiquidAnswer, LiquidModel
 
 __all__ = [
     "Chamber",
@@ -49,6 +49,7 @@ __all__ = [
     "InputError",
     "JeffcottRotor",
     "Liquid",
+    "LiquidAnswer",
     "LiquidModel",
     "MagneticRotor",
     "Scene",
@@ -93,6 +94,7 @@ _HOMES = {
     "InputError": ("meshes.errors", "InputError"),
     "JeffcottRotor": ("leblanc.scene.rotors", "JeffcottRotor"),
     "Liquid": ("fluid.liquid", "Liquid"),
+    "LiquidAnswer": ("solvers.liquid_model", "LiquidAnswer"),
     "LiquidModel": ("solvers.liquid_model", "LiquidModel"),
     "MagneticRotor": ("leblanc.scene.magnetic", "MagneticRotor"),
     "Scene": ("leblanc.scene.scene", "Scene"),

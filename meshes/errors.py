@@ -32,6 +32,10 @@ class InputError(ValueError):
         self.value = value
         self.allowed = allowed
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str]]:
+        """Comes whole out of another process."""
+        return type(self), (self.field, self.value, self.allowed)
+
 
 def require_positive(field: str, value: float) -> None:
     """Raise `InputError` unless `value` is finite and above zero."""

@@ -164,6 +164,14 @@ class LiquidAnswer:
     limits : by its name each limit of the model, and where it is kept
     error : estimated error of U, at rest relative, of waves over the larger of U and a full chamber's; nan
         where the model has no estimate
+
+    Examples
+    --------
+    >>> from leblanc import Chamber, Liquid
+    >>> fills = Fills.of([Fill(Chamber(radius=0.2, height=0.05), Liquid("water", 1000.0, 1e-6), 1e-3)])
+    >>> whirls = Whirls.synchronous(np.array([50.0]), np.array([1e-3]), np.zeros(1))
+    >>> LiquidAnswer.at_rest(fills, whirls, fills.mass * whirls.amplitude, fills.mass).unbalance
+    array([0.001+0.j])
     """
 
     unbalance: Complex

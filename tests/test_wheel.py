@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from validation.run_notebooks import texts
+from validation.run_notebooks import FOR_USERS, texts
 
 ROOT = Path(__file__).parent.parent
 PACKAGES = ("meshes", "fluid", "solvers", "leblanc", "validation")
@@ -72,6 +72,7 @@ def test_holds_the_packages_and_the_examples_and_nothing_else(wheel: Path) -> No
     wanted = {f"{package}/{name}" for package in PACKAGES for name in files(ROOT / package)}
     assert held == wanted | {f"leblanc/examples/{name}" for name in files(ROOT / "examples")}
     assert {f"validation/notebooks/{path.name}" for path in texts()} <= held
+    assert {f"validation/notebooks/users/{name}.py" for name in FOR_USERS} <= held
     assert {"validation/data/openfoam_layer.json", "leblanc/examples/studies/fill_grid.toml"} <= held
 
 

@@ -1,5 +1,7 @@
 """`leblanc notebooks`: the notebooks that come with the package, executed; exit code 1 if one fails.
 
+Without a name those that validate; those for users, in a folder of their own, are asked for by name.
+
 Each runs in an empty folder, in a kernel of its own in which warnings and floating-point faults are errors.
 A warning or an error of Python that is printed to the standard error fails it as well; log lines do not.
 """
@@ -19,6 +21,10 @@ from typing import Annotated, Any
 import typer
 
 FOLDER = Path(__file__).parent / "notebooks"
+FOR_USERS = (
+    *("washing_machine_designed", "centrifuge_without_whirl", "machine_fitted", "uncertain_machine"),
+    "own_liquid_model",
+)
 _SECONDS = 600  # of one cell
 _NEEDED = ("jupytext", "nbclient", "ipykernel", "nbconvert")
 # The page needs no script, so it asks the network for none. On paper nothing scrolls.
@@ -59,12 +65,17 @@ numpy.seterr(divide="raise", over="raise", invalid="raise")
 def notebooks(
     names: Annotated[
         list[str] | None,
-        typer.Argument(metavar="NAME", help="Names of notebooks, or files in their form [default: all]."),
+        typer.Argument(
+            metavar="NAME",
+            help="Names of notebooks, or files in their form [default: those that validate]. For users: "
+            + ", ".join(FOR_USERS)
+            + ".",
+        ),
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("out/notebooks"),
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> int:
-    """Execute the validation notebooks. With outputs as .ipynb and HTML; exit code 1 if one fails."""
+    """Execute the notebooks that validate, or those named. As .ipynb and HTML; exit code 1 if one fails."""
     from leblanc.core.files import out_dir
     from leblanc.core.terminal import print_json, say
 
@@ -88,7 +99,7 @@ def notebooks(
 
 
 def texts() -> list[Path]:
-    """Files of the notebooks, Python in which comments are the text, in their order."""
+    """Files of the notebooks that validate, Python in which comments are the text, in their order."""
     return sorted(FOLDER.glob("[0-9]*.py"), key=lambda path: int(path.stem.partition("_")[0]))
 
 
@@ -96,7 +107,7 @@ def _text(name: str) -> Path:
     """File of a notebook by its name, or that file."""
     from meshes.errors import InputError
 
-    known = {path.stem: path for path in texts()}
+    known = {path.stem: path for path in (*texts(), *(FOLDER / "users" / f"{one}.py" for one in FOR_USERS))}
     path = known.get(name, Path(name))
     if not path.is_file():
         raise InputError("notebook", name, f"a file, or one of: {', '.join(known)}")
@@ -123,17 +134,19 @@ def execute(path: Path, out: Path) -> str:
     book.cells.insert(0, new_code_cell(_STRICT))
     # Of the kernel's own log the errors alone.
     options = {"kernel_name": "python3", "extra_arguments": ["--log-level=ERROR"]}
-    # Small matrices on one thread, modules from where this process takes them.
-    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    # Small matrices on one thread, modules from where this process takes them, pictures into the page.
+    own = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    own["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
     modules = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path if entry)
     wrong = ""
     with TemporaryDirectory() as folder:
         client = NotebookClient(book, timeout=_SECONDS, **options)
         try:
-            client.execute(cwd=folder, env=os.environ | threads | {"PYTHONPATH": modules})
+            client.execute(cwd=folder, env=os.environ | own | {"PYTHONPATH": modules})
         except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
             wrong = str(error)
     _without_first(book)
+    _describe_pictures(book)
     write_pages(book, path.stem, out)
     return wrong or _complaints(book)
 
@@ -145,6 +158,18 @@ def _without_first(book: Any) -> None:
         if cell.cell_type == "code":
             for part in (cell, *(part for part in cell.outputs if part.output_type == "execute_result")):
                 part.execution_count = part.execution_count and part.execution_count - 1
+
+
+def _describe_pictures(book: Any) -> None:
+    """Give pictures without words for those who cannot see them the caption above, "Figure: ..."."""
+    caption = ""
+    for cell in book.cells:
+        if cell.cell_type == "markdown":
+            caption = " ".join(cell.source.rpartition("Figure: ")[2].split())
+            continue
+        for output in cell.outputs:
+            if "image/png" in output.get("data", {}):
+                output.metadata.setdefault("image/png", {}).setdefault("alt", caption)
 
 
 def _complaints(book: Any) -> str:

@@ -40,6 +40,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
                 "Liquid",
                 "Friction",
                 "LiquidModel",
+                "LiquidAnswer",
             ),
         ),
     ),

@@ -20,7 +20,7 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command
 
-from leblanc.cli import app, diff, new, report_bug, schema, view
+from leblanc.cli import app, diff, mcp, new, report_bug, schema, view
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -36,7 +36,7 @@ DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 # Commands in the order of the help, by what they are for: of some the module, a function of its name in it;
 # those of the others are made from the signature of their call. Those of the last groups other packages have.
 GROUPS = {
-    "Begin": ("new", "app", "explain", "schema", "diff"),
+    "Begin": ("new", "app", "mcp", "explain", "schema", "diff"),
     "What the machine does": ("run", "runup", "map", "compare", "export", "view"),
     "Choose and measure": ("optimise", "sweep", "fit"),
     "The liquid alone, and parts": ("layer", "modes", "volume", "bearing"),
@@ -46,7 +46,7 @@ _ELSEWHERE = ("validate", "trade", "notebooks")
 NAMES = tuple(name for names in GROUPS.values() for name in names if name not in _ELSEWHERE)
 MODULES = {
     each.__name__.rpartition(".")[2].replace("_", "-"): each
-    for each in (app, diff, new, report_bug, schema, view)
+    for each in (app, diff, mcp, new, report_bug, schema, view)
 }
 ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well
 

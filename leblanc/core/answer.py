@@ -48,15 +48,23 @@ class Typed:
     liquid_model: str = ""
 
 
-def as_typed(answer: Answer, scene: Any = None, study: Any = None, model: Any = None, **_: Any) -> None:
+def as_typed(
+    answer: Answer,
+    scene: Any = None,
+    study: Any = None,
+    model: Any = None,
+    models: Sequence[Any] = (),
+    **_: Any,
+) -> None:
     """Let an answer know what was asked, by its question; a study that changes the scene says so before."""
     scene = scene if study is None else study.scene
     if scene is not None and "typed" not in vars(answer):
-        own = "" if model is None else model if isinstance(model, str) else _made_of(model)
+        objects = [one for one in (model, *models) if not isinstance(one, str | None)]
+        own = ", ".join(map(_made_of, objects)) or model or ""
         typed = Typed(scene.text, "" if study is None else study.text, path=scene.file, liquid_model=own)
         object.__setattr__(answer, "typed", typed)
-        if own and not isinstance(model, str):
-            told = f"{vars(answer)['digest']} {own} {_code_of(type(model))}"
+        if objects:
+            told = f"{vars(answer)['digest']} {own} {' '.join(_code_of(type(one)) for one in objects)}"
             object.__setattr__(answer, "digest", sha256(told.encode()).hexdigest())
         object.__setattr__(answer, "scene_asked", scene)
 

@@ -34,7 +34,7 @@ def load(path: Path, changes: Sequence[str] = ()) -> Scene:
     table = scene_table(text, path)
     with with_lines(path):
         scene = scene_from_table(table, str(path), text)
-    others = dict(map(_change, changes))
+    others = dict(map(change, changes))
     if others:
         try:
             scene = scene.replace(others)
@@ -50,7 +50,7 @@ def load(path: Path, changes: Sequence[str] = ()) -> Scene:
     return scene
 
 
-def _change(text: str) -> tuple[str, Any]:
+def change(text: str) -> tuple[str, Any]:
     """Path and value of "PATH=VALUE"; the value as TOML where it is one, else a text."""
     path, sign, value = path_text(text).partition("=")
     if not sign or not path.strip():

@@ -60,6 +60,10 @@ class SceneError(ValueError):
         super().__init__("\n".join(map(str, faults)))
         self.faults = tuple(faults)
 
+    def __reduce__(self) -> tuple[type[SceneError], tuple[tuple[SceneFault, ...]]]:
+        """Comes whole out of another process."""
+        return type(self), (self.faults,)
+
 
 def field_path(keys: Sequence[str | int]) -> str:
     """Path of a field from its keys, as in "chambers.0.volume"."""

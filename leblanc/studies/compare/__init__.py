@@ -12,15 +12,18 @@ from meshes.errors import InputError
 if TYPE_CHECKING:
     from leblanc.scene.scene import SceneOrPath
     from leblanc.studies.compare.answer import CompareAnswer
+    from solvers.liquid_model import LiquidModel
 
 FILES = ("compare.nc",)
-_NAMES = Reader("leblanc.studies.compare:names_of")
+_MODELS = Reader("leblanc.studies.compare:models_of")
 
 
 def compare(
     scene: Annotated[SceneOrPath, SCENE, "The machine, or the path of its file."],
     models: Annotated[
-        Sequence[str], _NAMES, "Liquid models, commas between them; the last that answers is the reference."
+        Sequence[str | LiquidModel],
+        _MODELS,
+        "Liquid models, commas between them; the last that answers is the reference.",
     ],
     *,
     workers: Annotated[int, Option(same=True), "Processes that hold waves in time [default: all cores]."] = 1,
@@ -31,7 +34,8 @@ def compare(
 ) -> CompareAnswer:
     """The same scene by several liquid models. Table, figure, cost.
 
-    A model that does not answer the scene is an entry with the reason. The processor time is that of this
+    In Python an object as `leblanc.LiquidModel` says may stand beside the names. A model that does not answer
+    the scene is an entry with the reason. The processor time is that of this
     process and of its workers, and includes libraries that a model alone needs and that are loaded for it.
 
     Raises
@@ -47,9 +51,11 @@ def compare(
     return ask(compare, "leblanc.studies.compare.study:answer", locals())
 
 
-def names_of(models: Any, field: str) -> tuple[str, ...]:
-    """Names of liquid models, of a list or of one text with commas between them."""
-    names = models.split(",") if isinstance(models, str) else models
-    if not isinstance(names, Sequence) or not all(isinstance(name, str) for name in names):
+def models_of(models: Any, field: str) -> tuple[Any, ...]:
+    """Liquid models of a list of names and objects, or of one text of names with commas between them."""
+    given = models.split(",") if isinstance(models, str) else models
+    if not isinstance(given, Sequence) or not all(
+        isinstance(one, str) or hasattr(one, "answer") for one in given
+    ):
         raise InputError(field, str(models), "names of liquid models, in a list or with commas between them")
-    return tuple(name.strip() for name in names)
+    return tuple(one.strip() if isinstance(one, str) else one for one in given)

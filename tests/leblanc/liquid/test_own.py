@@ -396,7 +396,7 @@ def test_explain_says_nothing_of_an_even_layer_where_the_scene_names_another(
 
 
 @kills("leblanc.core.answer:as_typed", " {own} {", " {")
-@kills("leblanc.core.answer:as_typed", "{_code_of(type(model))}", "")
+@kills("leblanc.core.answer:as_typed", "{' '.join(_code_of(type(one)) for one in objects)}", "")
 @kills("leblanc.core.answer:_code_of", "{[*map(_code_of, code.co_consts)]}", "")
 @kills("leblanc.core.answer:_made_of", "={_made_of(value, within)}", "={value!r}")
 def test_digests_tell_models_of_one_name_apart() -> None:

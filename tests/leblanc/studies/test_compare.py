@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from itertools import combinations
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -80,6 +82,41 @@ def test_small_differences_leave_their_ticks_room() -> None:
 def test_a_model_by_itself_has_no_difference() -> None:
     found = lb.compare(example("centrifuge"), ["linear"])
     assert found.reference == "linear" and found.largest_difference("linear") == 0.0
+
+
+class Solid:
+    """Liquid that is frozen to the drum."""
+
+    name = "solid"
+
+    def answer(self, fills: Any, whirls: Any) -> lb.LiquidAnswer:
+        """See `LiquidModel`."""
+        return lb.LiquidAnswer.at_rest(fills, whirls, fills.mass * whirls.amplitude, fills.mass)
+
+
+@kills("leblanc.studies.compare.study:_answer", "None if named else model", "None")
+def test_a_model_of_ones_own_beside_a_name() -> None:
+    """Each as `run` answers with it; the digest knows the object, the scene's own does not."""
+    scene = example("horizontal_rig").replace({"speeds.count": 5})
+    found = lb.compare(scene, [Solid(), "linear"])
+    assert found.models == ("solid", "linear") and found.reference == "linear"
+    own = lb.run(scene, model=Solid())
+    np.testing.assert_array_equal(found.results["solid"].amplitude, own.amplitude)
+    assert found.difference("solid").any() and "Solid" in found.typed.liquid_model
+    assert found.digest not in (scene.digest, own.digest)
+    for wrong in ([Solid(), Solid()], [Solid(), 1]):
+        with pytest.raises(InputError) as fault:
+            lb.compare(scene, wrong)
+        assert fault.value.field == "models"
+
+
+def test_an_announced_model_is_known_by_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    entry = SimpleNamespace(name="solid", group="leblanc.liquids", value="ice:Solid", load=lambda: Solid)
+    package = SimpleNamespace(name="ice", entry_points=(entry,))
+    monkeypatch.setattr("leblanc.registry.distributions", lambda: [package])
+    scene = example("horizontal_rig").replace({"speeds.count": 5})
+    found, own = (lb.compare(scene, [model, "linear"]) for model in ("solid", Solid()))
+    np.testing.assert_array_equal(found.difference("solid"), own.difference("solid"))
 
 
 def test_the_scenes_own_model_does_not_count() -> None:
@@ -169,7 +206,7 @@ def test_kept_states_are_held_anew_where_their_time_is_asked_for(
     """Else what an earlier run has left is taken, and costs nothing."""
     seen: list[Holding] = []
 
-    def looked_at(scene: Scene, name: str, holding: Holding) -> object:
+    def looked_at(scene: Scene, model: str, holding: Holding) -> object:
         seen.append(holding)
         raise InputError("scene", "enough", "seen")
 
