@@ -204,11 +204,11 @@ class RunupHistory:
             when="ring_speed",
         ),
     ] = None
-    #: of the largest amplitude of the run, m: what half the cells change of it, and what that hand-over
-    #: changes; nan without those runs
-    peak_gaps: tuple[float, float] = (math.nan, math.nan)
-    #: of the amplitude, m: what half the cells and that hand-over change of its largest value within a turn
-    #: about each time, shape (k,); None without those runs
+    #: of the largest amplitude of the run, m: what half the cells change of it, what that hand-over changes,
+    #: and what the last digits of the unbalance do; nan without those runs
+    peak_gaps: tuple[float, float, float] = (math.nan, math.nan, math.nan)
+    #: of the amplitude, m: what all of these change of its largest value within a turn about each time,
+    #: shape (k,); None without those runs
     band: Array | None = None
     stage: Index | None = None  #: of its programme in which each time was reached, from 0, shape (k,)
     #: the motor gave less than its programme asked on the way to each time, shape (k,)
@@ -279,32 +279,40 @@ def run_up(
     numerics = numerics or RunupNumerics()
     start = drive.corners()[1, 0]
 
-    def machine(resolved: RunupNumerics) -> RunupMachine:
+    def machine(resolved: RunupNumerics, of: RotorSystem) -> RunupMachine:
         how = resolved.cells, resolved.dispersion, resolved.enstrophy, resolved.handover
-        return model(system, fills, start, friction, gravity, *how)
+        return model(of, fills, start, friction, gravity, *how)
 
-    def alone(resolved: RunupNumerics) -> RunupHistory:
-        return _march(machine(resolved), Shedding(system), drive, resolved, lambda _: None, np.empty(0))
+    def alone(resolved: RunupNumerics, change: float = 0.0) -> RunupHistory:
+        of = replace(system, unbalance=system.unbalance * (1.0 + change)) if change else system
+        return _march(machine(resolved, of), Shedding(of), drive, resolved, lambda _: None, np.empty(0))
 
     share = 0.8 if numerics.companion else 1.0
     wanted = np.asarray(snapshots, dtype=float)
     recorder = Recorder(fastest_frequency(system), len(system.coordinates)) if follow else None
     tell = lambda part: progress and progress(share * part)  # noqa: E731
-    history = _march(machine(numerics), Shedding(system), drive, numerics, tell, wanted, recorder)
+    history = _march(machine(numerics, system), Shedding(system), drive, numerics, tell, wanted, recorder)
     if not numerics.companion or not history.converged or numerics.cells < 16:
         return history
     coarse = replace(numerics, cells=numerics.cells // 2)
     other = alone(coarse)
-    early = None
+    early, nudged = None, []
     if numerics.handover is Handover.CARRIED and any(each.captured for each in history.transfers):
         early = alone(replace(coarse, handover=Handover.DRUM))
+        # Liquid that tumbles makes of the last digits what is seen.
+        nudged = [alone(coarse, change) for change in (-NUDGE, NUDGE)]
     if progress:
         progress(1.0)
-    return _with_errors(history, other, early)
+    return _with_errors(history, other, early, nudged)
 
 
-def _with_errors(history: RunupHistory, coarse: RunupHistory, early: RunupHistory | None) -> RunupHistory:
-    """The run with its errors, from two others as coarse: by its own rule of capture, and another."""
+NUDGE = 1e-9  # relative change of the unbalance, next to nothing but for rounding
+
+
+def _with_errors(
+    history: RunupHistory, coarse: RunupHistory, early: RunupHistory | None, nudged: Sequence[RunupHistory]
+) -> RunupHistory:
+    """The run with its errors, from others as coarse: by its own rule of capture, another, and nudged."""
     if not coarse.converged:
         return history
     firmer = [] if early is None or not early.converged else [early]
@@ -315,13 +323,21 @@ def _with_errors(history: RunupHistory, coarse: RunupHistory, early: RunupHistor
     crests = {id(run): _over_a_turn(run) for run in (history, coarse, early) if run is not None}
     band = _gap(history, coarse, crests[id(history)], crests[id(coarse)])
     handed, peak = math.nan, float(coarse.largest.max())
-    gaps = [abs(float(history.largest.max()) - peak), math.nan]
+    gaps = [abs(float(history.largest.max()) - peak), math.nan, math.nan]
     if early is not None and early.converged:
         gaps[1] = abs(float(early.largest.max()) - peak)
         other = _gap(coarse, early, crests[id(coarse)], crests[id(early)])
         handed = float(np.nanmax(other)) * scale
         known = ~np.isnan(other)
         band = band + np.interp(history.time, coarse.time[known], other[known])
+    ended = [run for run in nudged if run.converged]
+    if ended:
+        peaks = [peak, *(float(run.largest.max()) for run in ended)]
+        gaps[2] = max(peaks) - min(peaks)
+        apart = [_gap(coarse, run, crests[id(coarse)], _over_a_turn(run)) for run in ended]
+        widest = np.fmax.reduce(apart)
+        known = ~np.isnan(widest)
+        band = band + np.interp(history.time, coarse.time[known], widest[known])
     known = ~np.isnan(band)
     whole = np.interp(history.time, history.time[known], band[known])
     return replace(
@@ -329,7 +345,7 @@ def _with_errors(history: RunupHistory, coarse: RunupHistory, early: RunupHistor
         error_estimate=at_once,
         handover_estimate=handed,
         ring_speed=None if np.isnan(formed).all() else _band_of(formed),
-        peak_gaps=(gaps[0], gaps[1]),
+        peak_gaps=(gaps[0], gaps[1], gaps[2]),
         band=whole,
     )
 

@@ -388,8 +388,8 @@ class RunupAnswer(Answer):
     def peak_error(
         self,
     ) -> Annotated[dict[str, float], Q("m", text="error of the largest amplitude", data=False)]:
-        """By `cells` (and steps) and by `handover`; nan if not estimated."""
-        return dict(zip(("cells", "handover"), self.history.peak_gaps, strict=True))
+        """By `cells` (and steps), by `handover` and by `rounding`; nan if not estimated."""
+        return dict(zip(("cells", "handover", "rounding"), self.history.peak_gaps, strict=True))
 
     @property
     def peak_dry(self) -> Annotated[dict[str, float], Q(text="the peak without liquid, SI, nan if not run")]:

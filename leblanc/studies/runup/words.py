@@ -57,7 +57,12 @@ IN_TABLES = (
     *(RunupCode.LIQUID_MODEL, RunupCode.ROUGH, RunupCode.ENERGY),
     *(RunupCode.PEAK_STEADY, RunupCode.SELF_EXCITED),
 )
-_CAUSES = {"cells": "cells and steps", "handover": "pool-annulus transition"}
+_CAUSES = {
+    "cells": "cells and steps",
+    "handover": "pool-annulus transition",
+    "rounding": "the last digits of the unbalance",
+}
+_SEEN = 1e-3  # of the amplitude, from which on a part of its error is named
 _HERE = "leblanc.studies.runup.figure"
 
 
@@ -174,7 +179,9 @@ def peak_known(answer: RunupAnswer) -> str:
         return ""
     error = sum(parts.values())
     text = f"\N{PLUS-MINUS SIGN} {with_unit(error, LENGTH)} ({percent(error / largest)})"
-    named = [f"{_CAUSES[name]} {percent(size / largest)}" for name, size in parts.items() if size > 0.0]
+    named = [
+        f"{_CAUSES[name]} {percent(size / largest)}" for name, size in parts.items() if size > _SEEN * largest
+    ]
     return f"{text}: {', '.join(named)}" if len(named) > 1 else text
 
 
