@@ -292,7 +292,7 @@
       const m = compared.measured;
       m.speed.forEach((w, k) => { if (m.amplitude[k] !== null) text += `<circle class="measured" cx="${X(w)}" cy="${Y(m.amplitude[k])}" r="3" stroke="#000" fill="#fff"/>`; });
     }
-    if (cursor === null) cursor = curve.peak.speed || (low + high) / 2;
+    if (cursor === null) cursor = high;
     cursor = Math.min(high, Math.max(low, cursor));
     const k = nearest(cursor);
     text += `<line id="line" x1="${X(cursor)}" y1="${top}" x2="${X(cursor)}" y2="${floor}" stroke="#000"/>`;

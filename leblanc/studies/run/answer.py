@@ -324,10 +324,11 @@ class RunAnswer(Answer):
         )
         elsewhere = (*(OF_MODELS if self.models else ()), RunCode.HELD)
         said = [note.text for note in self.notes if note.code not in elsewhere]
-        pictures = tuple(self._pictures())
+        pictures, effect = tuple(self._pictures()), words.effect(self)
         return (
-            Headline(words.answer(self), words.machine(self), words.headline_error(self)),
-            *([Words(said_of_liquid)] if (said_of_liquid := words.effect(self)) else []),
+            Headline(effect or words.answer(self), words.machine(self), words.headline_error(self)),
+            *([Words(effect, shown="text"), Words(words.answer(self), shown="page")] if effect else []),
+            *([Words(unseen)] if (unseen := words.unseen(self)) else []),
             Table(rows, head, right=True, shown="text"),
             Words(amplitude_sentence(words.amplitude_place(self)), shown="text"),
             *(Words(note.text, shown="text") for note in self.notes if note.code in _SAID),

@@ -83,12 +83,20 @@ from solvers.whirl.laminar import Met
 _DIAGRAM = 121  # speeds of a Campbell diagram
 
 # What each coordinate of the rotors means, in words.
-# What a rotor does in each coordinate, y upwards where the axis is horizontal, z where it is vertical.
-_MOTIONS = {
-    "horizontal": {"x": "sway along x", "y": "bounce along y", "z": "surge along the axis"},
-    "vertical": {"x": "sway along x", "y": "sway along y", "z": "bounce along the axis"},
+# What a rotor does in each coordinate. Of a tub, whose drum turns about y, by the drum's axis; z is upwards
+# where that lies, y where it stands.
+_TUB = {
+    "horizontal": (
+        "sway across",
+        "surge along the drum",
+        "bounce",
+        "rocking about x",
+        "rolling about the drum",
+    ),
+    "vertical": ("sway along x", "bounce", "sway along z", "rocking about x", "turning about the drum"),
 }
-_TURNS = {"alpha": "rocking about x", "beta": "rocking about y", "gamma": "turning about the axis"}
+_LAST = {"horizontal": "yawing about the vertical", "vertical": "rocking about z"}
+_MOTIONS = {"x": "sway along x", "y": "sway along y", "alpha": "rocking about x", "beta": "rocking about y"}
 _NAMED = 0.2  # of a mode's kinetic energy, from which a coordinate names it
 
 
@@ -158,7 +166,8 @@ def rest_modes(system: RotorSystem, axis: str) -> tuple[RestMode, ...]:
     shape = found.shape[0]
     energy = (shape.conj() * (system.mass @ shape)).real
     share = energy / energy.sum(axis=0)
-    names = [(_MOTIONS[axis] | _TURNS)[name] for name in system.coordinates]
+    tub = len(system.coordinates) == len(_TUB[axis]) + 1
+    names = [*_TUB[axis], _LAST[axis]] if tub else [_MOTIONS[name] for name in system.coordinates]
     return tuple(
         RestMode(float(frequency), float(ratio), _named(names, part))
         for frequency, ratio, part in zip(found.frequency[0], found.damping_ratio[0], share.T, strict=True)

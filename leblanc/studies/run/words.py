@@ -87,20 +87,37 @@ def effect(result: RunAnswer) -> str:
     if result.chamberless or not result.liquid_mass > 0.0 or result.speed.size < 2 or top is None:
         return ""
     at = change_words(float(curve.amplitude[-1]), float(curve.amplitude_dry[-1]))
-    highest = largest(curve.amplitude_dry)
-    way = (
-        ""
-        if highest is None
-        else change_words(float(curve.amplitude[top]), float(curve.amplitude_dry[highest]))
-    )
+    bare = float(np.nanmax(curve.amplitude_dry, initial=0.0))
+    way = change_words(float(curve.amplitude[top]), bare)
     if not at or not way:
         return ""
+    *_, final = comparisons(result)[:3]
+    where = in_rpm(float(result.speed[-1]))
+    said = f"With the liquid the amplitude at {where} is {final.wet_text} instead of {final.dry_text} ({at})"
     doubts, error = _wrong(result, top), error_at(result, top)
-    bare = math.nan if highest is None else float(np.nanmax(curve.amplitude_dry))
     if error > abs(curve.amplitude[top] / bare - 1.0):
         doubts.append(f"error {_error_words(error)}")
-    aside = f" (there {', '.join(doubts)})" if doubts else ""
-    return f"With the liquid {at} at {in_rpm(float(result.speed[-1]))}, {way} on the way{aside}."
+    if result.carried_from is not None and curve.speed[top] < result.carried_from < math.inf:
+        doubts.append(f"no annulus from rest below {in_rpm(result.carried_from)}")
+    if doubts:
+        return f"{said}. On the way the steady answer does not hold ({', '.join(doubts)}): see leblanc runup."
+    return f"{said}, on the way {way}."
+
+
+def unseen(result: RunAnswer) -> str:
+    """Critical speeds below the first speed, at which nothing is answered; empty without any."""
+    if result.motion is None:
+        found = [result.critical_speed_dry]
+    else:
+        found = [speed for speed, _ in result.motion.critical_speeds_dry]
+    below = [speed for speed in found if 0.0 < speed < float(result.speed.min())]
+    if not below or result.speed.size < 2:
+        return ""
+    count = (
+        f"{len(below)} of {len(found)} critical speeds lie" if len(found) > 1 else "The critical speed lies"
+    )
+    most = in_rpm(max(below))
+    return f"{count} below the first speed, up to {most}: resonances there are not in these figures."
 
 
 def _where_it_holds(result: RunAnswer) -> str:
@@ -290,9 +307,12 @@ def comparisons(result: RunAnswer) -> list[Comparison]:
 
 def _resonance(result: RunAnswer) -> list[Comparison]:
     """Amplification factor and separation margin of the highest resonance; nothing where there is none."""
+    curve = result.curve
+    places = (result.resonances, curve.top), (result.resonances_dry, largest(curve.amplitude_dry))
+    # Of the largest amplitudes that are reported, where these are no ends of the range.
     both = [
-        max(found, key=lambda one: one.amplitude, default=None)
-        for found in (result.resonances, result.resonances_dry)
+        next((one for one in found if k is not None and one.speed == curve.speed[k]), None)
+        for found, k in places
     ]
     if result.speed.size < 2 or both[0] is None:
         return []

@@ -227,7 +227,7 @@ def test_every_control(app: App) -> None:
     reading = app.tab.value("document.getElementById('reading').textContent")
     section = app.tab.value("document.getElementById('section').innerHTML")
     for _ in range(40):
-        app.key("ArrowRight", 39)
+        app.key("ArrowLeft", 37)
     app.until(f"document.getElementById('reading').textContent !== {reading!r}")
     assert app.tab.value("document.getElementById('section').innerHTML") != section
     drawn = app.tab.value("document.getElementById('wet').getAttribute('d')")

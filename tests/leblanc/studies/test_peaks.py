@@ -24,7 +24,7 @@ from leblanc.studies.peaks import _distinct, responses_between
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.run.words import alts, answer, comparisons, effect, remarks
+from leblanc.studies.run.words import alts, answer, comparisons, effect, remarks, unseen
 from leblanc.studies.sweep.batch import answer_scenes
 from meshes.arrays import Array
 from solvers.synchronous.response import Response, by_speed, response
@@ -396,15 +396,33 @@ def test_resonances_that_are_one() -> None:
 
 
 @kills("leblanc.core.units:change_words", "size / without - 1.0", "without / size - 1.0")
-@kills("leblanc.studies.run.words:effect", "curve.amplitude_dry[highest]", "curve.amplitude_dry[top]")
+@kills(
+    "leblanc.studies.run.words:effect",
+    "float(curve.amplitude[top]), bare",
+    "float(curve.amplitude[-1]), bare",
+)
+@kills("leblanc.studies.run.words:effect", "float(curve.amplitude_dry[-1])", "float(curve.amplitude_dry[0])")
 def test_the_direction_of_what_the_liquid_does() -> None:
-    """In per cent at the last speed and between the two largest amplitudes, as the table has them."""
-    found = lb.run(lb.example("runup"))
+    """In per cent at the last speed and, where the answer holds, between the two largest amplitudes."""
+    found = lb.run(lb.example("horizontal_rig"))
     most, _, last, *_ = comparisons(found)
     said = effect(found)
+    assert f"is {last.wet_text} instead of {last.dry_text}" in said and "does not hold" not in said
     for row in (most, last):
         share = 100.0 * (float(row.ratio) - 1.0)
         assert f"{MINUS}{abs(share):.{1 if abs(share) < 10.0 else 0}f} %" in said
+    # No percentage of what is unstable.
+    wild = effect(lb.run(lb.example("runup")))
+    assert "(unstable): see leblanc runup." in wild and wild.count("%") == 1
+    lying = effect(lb.run(lb.example("washing_machine")))
+    assert "no annulus from rest below" in lying and lying.count("%") == 2  # one is the error
+
+
+def test_resonances_that_are_not_asked_for_are_named() -> None:
+    scene = lb.example("tub")
+    assert unseen(lb.run(scene.replace({"speeds.start": "20 rpm", "speeds.count": 60}))) == ""
+    few = unseen(lb.run(scene.replace({"speeds.start": "100 rpm", "speeds.count": 60})))
+    assert "of 6 critical speeds lie below the first speed" in few
     assert change_words(1.51, 1.0) == "+51 %" and change_words(1.0, 1.0) == "no change"
     assert change_words(1.0, 0.0) == change_words(math.inf, 1.0) == change_words(1.0, math.nan) == ""
     assert effect(lb.run(lb.example("runup").replace({"chambers.0.volume": 0.0}))) == ""
