@@ -15,4 +15,6 @@ def require_app() -> None:
     """Raise an `InputError` where libraries of the page are not installed."""
     for name in ("trame", "trame_vuetify", "tomlkit"):
         if find_spec(name) is None:
-            raise InputError("app", f"no {name}", "asked for with the extra: pip install leblanc[app]")
+            raise InputError(
+                "app", f"no {name}", "asked for once the extra is installed: pip install leblanc[app]"
+            )

@@ -22,7 +22,7 @@ _LONG = 25  # values of a list that are told
 def mcp() -> None:
     """Serve the questions as tools by the Model Context Protocol, over stdio, until the input ends."""
     if find_spec("mcp") is None:
-        raise InputError("mcp", "no mcp", "asked for with the extra: pip install leblanc[mcp]")
+        raise InputError("mcp", "no mcp", "asked for once the extra is installed: pip install leblanc[mcp]")
     from mcp.server import MCPServer
 
     places = {name: f"leblanc.studies.{name}:{name}" for name in _ASKED}

@@ -80,7 +80,7 @@ class Record:
         for command, entry in made.items():
             there = [name for name in entry["files"] if name not in files and _file(folder, name)]
             if there and not entry["current"]:
-                lines.append(f"{folder}: of another state of the scene, by {command}: {_some(there)}")
+                lines.append(f"{folder}: made by {command} before the machine file changed: {_some(there)}")
             elif there and not entry.get("finished"):
                 lines.append(f"{folder}: perhaps of two runs, since {command} was stopped: {_some(there)}")
         return lines

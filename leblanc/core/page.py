@@ -7,7 +7,7 @@ import os
 import platform
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count, groupby
 from pathlib import Path
 from typing import Any
@@ -169,9 +169,13 @@ def _sections(blocks: Sequence[Block], figures: Mapping[str, Any]) -> list[dict[
     """Sections as the template takes them; what stands before the first one are the results."""
     numbers = count(1)
     loose = tuple(block for block in blocks if not isinstance(block, Section))
-    results = Section("Results", tuple(block for block in loose if not isinstance(block, Notes)))
+    first = tuple(block for block in loose if not isinstance(block, Notes))
     notes = [block for block in loose if isinstance(block, Notes)]
     own = [block for block in blocks if isinstance(block, Section)]
+    # Results of an answer's own follow in the same section.
+    more = next((section for section in own if section.title == "Results"), Section("Results", ()))
+    results = replace(more, blocks=(*first, *more.blocks))
+    own = [section for section in own if section is not more]
     found = []
     for section in (results, *own, *(Section(note.title, (note,), shown=note.shown) for note in notes)):
         if section.shown != "text":

@@ -24,12 +24,13 @@ def show(blocks: Iterable[Block]) -> None:
             for text in block.texts:
                 print(f"note: {text}")
         elif isinstance(block, Checks):
-            touched = any(one.grade > Grade.NOTE for one in block.rows)
+            # What is passed at no speed stands in the report.
+            passed = [one for one in block.rows if one.grade or one.where != "none"]
+            touched = any(one.grade > Grade.NOTE for one in passed)
             print(f"\n{block.title}{' (! touches the figures above)' if touched else ''}")
-            marks = ["!" if one.grade > Grade.NOTE else " " for one in block.rows]
-            print_table(
-                [(f"{mark} {one.label}", one.where) for mark, one in zip(marks, block.rows, strict=True)]
-            )
+            marks = ["!" if one.grade > Grade.NOTE else " " for one in passed]
+            shown = [(f"{mark} {one.label}", one.where) for mark, one in zip(marks, passed, strict=True)]
+            print_table(shown or [("  none", "")])
         elif isinstance(block, Table) and block.rows:
             if block.title:
                 print(f"\n{block.title}")

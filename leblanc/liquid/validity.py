@@ -26,7 +26,7 @@ from leblanc.core.units import (
     with_unit,
 )
 from leblanc.liquid.notes import Number
-from leblanc.scene.rotors import JeffcottRotor, Machine, TubRotor, TwoPlaneRotor
+from leblanc.scene.rotors import JeffcottRotor, Machine, Spring, TubRotor, TwoPlaneRotor
 from leblanc.scene.scene import WITHOUT_CHAMBERS, Exciter, MagneticRotor, Scene
 from meshes.errors import InputError
 from solvers.liquid_model import Range
@@ -168,6 +168,10 @@ def _free_ways(system: RotorSystem) -> str:
     """Directions in which nothing holds a machine, in words; empty where there is none."""
     free = free_motions(system)
     energy = (np.abs(free) ** 2 * np.diag(system.mass)[:, None]).sum(axis=1)
+    if free.shape[1] == 1:
+        # A single motion may be several at once, as a swing about the points that a tub hangs from.
+        parts = np.flatnonzero(energy >= 0.1 * energy.sum())
+        return " together with ".join(_WAYS[system.coordinates[k]] for k in parts.tolist())
     most = np.argsort(energy)[::-1][: free.shape[1]]
     return " and ".join(_WAYS[system.coordinates[k]] for k in sorted(most.tolist()))
 
@@ -187,13 +191,24 @@ def _cure(rotor: TwoPlaneRotor | TubRotor, gravity: float) -> tuple[str, str]:
     field, cure = _CURES[rotor.kind]
     if not isinstance(rotor, TubRotor) or rotor.axis == "vertical" or not rotor.springs:
         return field, cure
-    force = (rotor.tub_mass + rotor.drum_mass) * gravity / len(rotor.springs)
+    # Of a tub whose drum lies z is upwards.
+    hanging = sum(_carries(spring) for spring in rotor.springs)
+    if not hanging:
+        return field, cure
+    force = (rotor.tub_mass + rotor.drum_mass) * gravity / hanging
     hangs = f"{with_unit(_HANGER, LENGTH)} hold with {number(force / _HANGER)} N/m each"
     return (
         field,
         f"{cure} (springs that a tub hangs from hold it across themselves too, with their force "
         f"over their length: {number(force)} N of its weight on {hangs})",
     )
+
+
+def _carries(spring: Spring) -> bool:
+    """Whether a spring of a tub bears weight."""
+    if isinstance(spring.stiffness, tuple):
+        return spring.stiffness[2] > 0.0
+    return spring.direction is not None and spring.direction[2] != 0.0
 
 
 def moves_freely(scene: Scene) -> bool:

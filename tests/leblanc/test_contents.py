@@ -130,7 +130,7 @@ def test_files_of_another_command_are_marked(folder: Path) -> None:
     does("runup", "a.toml", "1", {"runup.nc": "1"})
     assert does("run", "a.toml", "1", {"run.txt": "1"}) == []
     said = does("run", "a.toml", "2", {"run.txt": "2"})
-    assert said == [f"{folder}: of another state of the scene, by runup: runup.nc"]
+    assert said == [f"{folder}: made by runup before the machine file changed: runup.nc"]
     assert {command: entry["current"] for command, entry in made(folder).items()} == {
         "run": True,
         "runup": False,

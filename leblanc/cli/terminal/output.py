@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
@@ -55,10 +56,11 @@ def change(text: str) -> tuple[str, Any]:
     path, sign, value = path_text(text).partition("=")
     if not sign or not path.strip():
         raise InputError("--set", text, "PATH=VALUE, such as rotor.unbalance='120 g mm'")
+    path = re.sub(r"\[(\d+)\]", r".\1", path.strip())  # as in other languages
     try:
-        return path.strip(), tomllib.loads(f"value = {value}")["value"]
+        return path, tomllib.loads(f"value = {value}")["value"]
     except ValueError:
-        return path.strip(), value.strip()
+        return path, value.strip()
 
 
 def load_study(path: Path) -> Sweep:

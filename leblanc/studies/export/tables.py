@@ -86,7 +86,8 @@ def _of_answer(answer: Answer, name: str, what: str) -> Iterator[Table]:
     if isinstance(answer, RunupAnswer):
         kept[grid] += _between(answer)
     for over, columns in kept.items():
-        first = sorted(columns, key=lambda column: column.name != over)
+        # The grid, then what most look for.
+        first = sorted(columns, key=lambda column: (column.name != over, column.name not in _PAIR))
         text = f"{what} over {over.replace('_', ' ')}"
         if len(first) > 1:
             yield Table(name if over == grid else f"{name}_{over}", text, tuple(first))
@@ -256,5 +257,5 @@ def extra(module: str, to: str) -> Any:
     try:
         return import_module(module)
     except ImportError as missing:
-        allowed = f"another format without the extra: pip install leblanc[export] ({missing})"
+        allowed = f"asked for once the extra is installed: pip install leblanc[export] ({missing})"
         raise InputError("to", to, allowed) from missing

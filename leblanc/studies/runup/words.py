@@ -175,7 +175,8 @@ def peak_known(answer: RunupAnswer) -> str:
     """The one error of the run's largest amplitude in words, with its parts; or nothing."""
     parts = {name: size for name, size in answer.peak_error.items() if not math.isnan(size)}
     largest = float(answer.history.largest.max())
-    if not parts or largest == 0.0:
+    at = float(answer.history.largest_time[np.argmax(answer.history.largest)])
+    if not parts or largest == 0.0 or not answer.in_range_at(at):
         return ""
     error = sum(parts.values())
     text = f"\N{PLUS-MINUS SIGN} {with_unit(error, LENGTH)} ({percent(error / largest)})"
