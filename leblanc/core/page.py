@@ -131,7 +131,7 @@ _WEIGHTS = (
     "Amplitude infinite",
     "Constraints exceeded",
     "Answer unstable",
-    "A small whirl grows when operating",
+    "A small whirl grows",
     "Growth not known",
     "Stability not known",
     "Liquid model out of range",

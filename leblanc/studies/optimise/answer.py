@@ -39,6 +39,7 @@ from leblanc.core.units import (
     in_peak,
     in_rpm,
     number,
+    over_rpm,
     unit_for,
     with_unit,
 )
@@ -536,13 +537,23 @@ class OptimumAnswer(Best):
         yield amplitudes_are(self.place)
         yield "Working speed", in_rpm(self.working_speed)
         yield "Mass of the liquid", with_unit(self.mass, MASS)
-        yield "Stability margin at the operating speeds", f"{number(self.stability_margin)} 1/s"
+        yield f"Stability margin {self._operating()}", f"{number(self.stability_margin)} 1/s"
         if self.balance_quality is not None and self.balance_quality_dry is not None:
             both = quality_words(self.balance_quality), quality_words(self.balance_quality_dry)
             yield f"Balance quality at {in_rpm(self.working_speed)}", "; without liquid ".join(both)
         yield "Sets of volumes evaluated", f"{self.evaluations}"
         if self.unit == "m":
             yield "Equal values", f"within {number(100.0 * self.equal_within)} %, of them the least liquid"
+
+    def _operating(self) -> str:
+        """Speeds at which the machine is used, in words."""
+        if self.task.operating is not None:
+            low, high = self.task.operating
+        elif self.response is not None:
+            low, high = self.response.speed.min(), self.response.speed.max()
+        else:
+            return "at the operating speeds"
+        return over_rpm(float(low), float(high))
 
     def checks(self) -> list[Check]:
         """Where the answer is not what it seems: the volumes by themselves, and the machine with them."""
@@ -553,8 +564,12 @@ class OptimumAnswer(Best):
             found.append(check("Interrupted", "see the notes", True))
         if self.stopped:
             found.append(check("Ended by a limit", self.stopped, True))
-        found.append(check("A small whirl grows when operating", grows, lost or self.growth > 0.0))
-        machine = [] if self.response is None else checks(self.response)
+        found.append(
+            check(f"A small whirl grows somewhere {self._operating()}", grows, lost or self.growth > 0.0)
+        )
+        # What is chosen for one speed is not touched by what happens on the way.
+        at = (self.working_speed,) if self.objective == "working_speed" else None
+        machine = [] if self.response is None else checks(self.response, at)
         return [*found, *machine]
 
     def _trade_off(self, edge: ParetoFront) -> Table:

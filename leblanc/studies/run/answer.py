@@ -327,7 +327,9 @@ class RunAnswer(Answer):
         pictures, effect = tuple(self._pictures()), words.effect(self)
         return (
             Headline(effect or words.answer(self), words.machine(self), words.headline_error(self)),
-            *([Words(effect, shown="text"), Words(words.answer(self), shown="page")] if effect else []),
+            # On a terminal a line each.
+            *(Words(one, shown="text") for one in effect.replace(". On", ".\nOn").splitlines()),
+            *([Words(words.answer(self), shown="page")] if effect else []),
             *([Words(unseen)] if (unseen := words.unseen(self)) else []),
             Table(rows, head, right=True, shown="text"),
             Words(amplitude_sentence(words.amplitude_place(self)), shown="text"),

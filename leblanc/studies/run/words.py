@@ -446,10 +446,14 @@ def _vibration(result: RunAnswer) -> list[tuple[str, str]]:
     ]
 
 
-def checks(result: RunAnswer) -> list[Check]:
-    """Where the answer is not what it seems: each check with its speeds, and the largest error."""
+def checks(result: RunAnswer, at: Sequence[float] | None = None) -> list[Check]:
+    """Where the answer is not what it seems: each check with its speeds, and the largest error.
+
+    What touches the speeds `at`, rad/s, the headline's if None, is a warning.
+    """
     r, tolerance, held = result.response, result.tolerance, result.held
-    failing = partial(failing_at, headline_speeds(result))
+    at = headline_speeds(result) if at is None else at
+    failing = partial(failing_at, at)
     lost = ~r.converged if held is None else ~r.converged & ~held.at
     found = [failing("Not converged", r.speed, lost)] if held is None or lost.any() else []
     found += _held_limits(result, held) if held is not None else []
@@ -484,9 +488,8 @@ def checks(result: RunAnswer) -> list[Check]:
         parts = [rpm_bands(result.whirl.bands)] if result.whirl.bands else []
         lost = np.isnan(result.whirl.growth)
         parts += [f"not known at {ranges(r.speed, lost)}"] if lost.any() else []
-        at = np.array(headline_speeds(result))
         grade = failing("", r.speed, lost).grade
-        if result.whirl.inside(at).any():
+        if result.whirl.inside(np.array(at)).any():
             grade = Grade.WARNING
         elif parts:
             grade = max(grade, Grade.NOTE)
