@@ -174,6 +174,8 @@ class OverValue:
         elif same > best:
             upto = "" if same == count - 1 else f"up to {self.text(same)}{unit} "
             found += f"; {upto}more changes nothing (under 0.1 %)"
+            if upto and np.isfinite(last[same + 1]) and not known[same + 1]:
+                found += ", beyond that it is unstable"
         elif best in (0, count - 1):
             found += f", the {'largest' if best else 'smallest'} of them"
         if bool(np.any(last[np.isfinite(last) & ~known] < least)):

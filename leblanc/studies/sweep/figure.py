@@ -61,11 +61,13 @@ def _over_value(figure: Figure, answer: SweepAnswer, over: OverValue) -> None:
     drawn = thin(np.column_stack([*lines.values()]), COLUMNS)
     x = over.value * over.unit.count
     axes: Any = figure.add_axes((0, 0, 1, 1))
-    few = {"marker": "o", "markersize": 3.0} if drawn.size <= FEW else {}
+    few = drawn.size <= FEW
     for name, label, colour in pairs:
         for key, dashes in ((name, "solid"), (f"{name}_dry", UNSTABLE)):
-            text = f"{label}, {'without' if key != name else 'with'} liquid"
-            axes.plot(x[drawn], lines[key][drawn], color=colour, linestyle=dashes, label=text, **few)
+            bare = key != name
+            mark = {"marker": "o", "markersize": 3.0} if few and not bare else {}
+            text = f"{label}, {'without' if bare else 'with'} liquid"
+            axes.plot(x[drawn], lines[key][drawn], color=colour, linestyle=dashes, label=text, **mark)
     if over.stable is not None and (known := ~over.stable & np.isfinite(lines["last_amplitude"])).any():
         mark = {"color": "0.15", "marker": "x", "linestyle": "none", "zorder": 3, "clip_on": False}
         axes.plot(x[known], lines["last_amplitude"][known], label=f"unstable {answer.at_last}", **mark)

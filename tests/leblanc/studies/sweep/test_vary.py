@@ -121,6 +121,11 @@ NAN, OIL = float("nan"), {"choice": [{"density": 900, "viscosity": 0}, "water"]}
         ([3e-3, 2.001e-3, 2e-3], None, "2.001 mm, is at 10 ml; more changes nothing (under 0.1 %)."),
         ([3e-3, 2e-3, 2e-3, 4e-3], None, "is at 10 ml; up to 20 ml more changes nothing (under 0.1 %)."),
         ([3e-3, 2e-3, 2e-3, NAN], None, "is at 10 ml; up to 20 ml more changes nothing (under 0.1 %)."),
+        (
+            [3e-3, 2e-3, 2e-3, 2e-3],
+            [True, True, True, False],
+            "up to 20 ml more changes nothing (under 0.1 %), beyond that it is unstable.",
+        ),
         ([3e-3, 2e-3, 1e-3], None, "1 mm, is at 20 ml, the largest of them."),
         ([1e-3, 2e-3, 3e-3], None, "1 mm, is at 0 ml, the smallest of them."),
         (
