@@ -70,8 +70,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
         help_of_out = _OUT.format(subject.name) if subject is not None and whole else _ONLY_OUT
         options.append(_parameter("out", Path | None, typer.Option(help=help_of_out), None))
         options.append(_parameter("png", bool, typer.Option("--png", help=_PNG), False))
-    varied = subject is not None and subject.read is SCENE
-    if varied:
+    if subject is not None:
         options.append(_parameter("set", list[str] | None, typer.Option("--set", help=SET), None))
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 

@@ -45,7 +45,8 @@ class Reader:
 
 
 SCENE = Reader("leblanc.scene.scene:scene_of")  # a scene, or the path of its file
-STUDY = Reader("leblanc.studies.sweep.plan:study_of")  # a sweep, or the path of its study file
+STUDY = Reader("leblanc.studies.sweep.plan:study_of")  # a sweep or a machine, or the path of its file
+VARY = Reader("leblanc.studies.sweep.plan:vary_of", many=True)  # values by paths, or texts PATH=VALUES
 FILE = Reader("leblanc.core.files:path_of")  # the path of a file
 FRICTION = Reader("leblanc.scene.scene:friction_of")  # a law, its text, or its table
 LIQUID = Reader("leblanc.scene.scene:liquid_of")  # a liquid, or a known name
@@ -220,7 +221,8 @@ def _of_list(kind: Any) -> Any:
 
 _READ = {
     SCENE: "Scene | dict | str | PathLike",
-    STUDY: "dict | str | PathLike",
+    STUDY: "Scene | dict | str | PathLike",
+    VARY: "dict",
     FILE: "str | PathLike",
     FRICTION: "Friction | str | dict",
     LIQUID: "Liquid | str",

@@ -202,6 +202,9 @@ def _sweeps() -> Iterator[Case]:
         yield _case(f"sweep-{study}", f"sweep small/{study}.toml --workers 0{more} --json --out out")
     yield _case("sweep-runups", "sweep small/uncertain_runup.toml --workers 0 --json --out out")
     yield _case("sweep-balls", "sweep small/balls_grid.toml --workers 0 --json --out out")
+    fills = "--vary chambers.0.volume=2ml..20ml:4 --workers 0"
+    yield _case("sweep-vary", f"sweep small/horizontal_rig.toml {fills} --json --out out")
+    yield _case("words-sweep-vary", f"sweep small/horizontal_rig.toml {fills} --out out")
     yield _case("sweep-workers", "sweep small/centrifuge_shares.toml --workers 1 --json --out out")
 
 
@@ -360,6 +363,7 @@ def _wrong() -> Iterator[Case]:
         "explain-no-file": "explain nowhere.toml",
         "study-as-scene": "run examples/studies/uncertain_rig.toml",
         "scene-as-study": f"sweep {rig}",
+        "vary-form": f"sweep {rig} --vary chambers.0.volume=2ml..20ml",
         "map-exciter": f"map {table}",
         "runup-exciter": f"runup {table}",
         "optimise-exciter": f"optimise {table}",

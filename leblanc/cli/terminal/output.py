@@ -63,12 +63,19 @@ def change(text: str) -> tuple[str, Any]:
         return path, value.strip()
 
 
-def load_study(path: Path) -> Sweep:
-    """Sweep from a study file, as `load` reads a scene."""
+def load_study(path: Path, changes: Sequence[str] = ()) -> Sweep:
+    """Sweep from a study file, as `load` reads a scene; of a machine file, with changes, before it varies."""
     from leblanc.liquid.validity import doubts
-    from leblanc.studies.sweep.plan import load_sweep
+    from leblanc.scene.schema.load import read_toml
+    from leblanc.studies.sweep.plan import is_machine, load_sweep, study_of
     from leblanc.studies.sweep.sampling import sampling_note
 
+    if is_machine(read_toml(path)):
+        return study_of(load(path, changes))
+    if changes:
+        raise InputError(
+            "--set", changes[0], "left out with a study file: the value stands in its machine file"
+        )
     plan = load_sweep(path)
     for doubt in doubts(plan.scene, plan.table):
         say(f"{plan.scene_path}: warning: {doubt.text}")

@@ -67,8 +67,11 @@ _ONE |= {"dampers": "damper", "points": "point", "bearings": "bearing"}
 _WORDS = {"drag": "race damping", "ball_mass": "mass of a ball"}
 
 
-def path_words(*paths: str) -> str:
-    """The number at paths for an axis or a caption: "rotor.supports.0.damping" is "damping of support 1"."""
+def path_words(*paths: str, chambers: int = 1) -> str:
+    """The number at paths for an axis or a caption: "rotor.supports.0.damping" is "damping of support 1".
+
+    `chambers` is how many the machine has, races among them.
+    """
     keys, more = keys_of(paths[0]), f" and {len(paths) - 1} more" if len(paths) > 1 else ""
     name = _WORDS.get(str(keys[-1]), str(keys[-1]).replace("_", " "))
     places = [
@@ -77,7 +80,7 @@ def path_words(*paths: str) -> str:
         if isinstance(key, int)
     ]
     # A machine with one chamber or race has no other to tell it from.
-    places = [place for place in places if place != "chamber 1"]
+    places = [place for place in places if place != "chamber 1" or chambers > 1]
     return (f"{name} of {places[-1]}" if places and not isinstance(keys[-1], int) else name) + more
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.core.answer import Answer
-from leblanc.core.blocks import Block, Notes, Picture, Table, Words
+from leblanc.core.blocks import Block, Headline, Notes, Picture, Table, Words
 from leblanc.core.files import path_text
 from leblanc.core.netcdf import NamedArrays
 from leblanc.core.notes import one_line
@@ -21,15 +21,18 @@ from leblanc.core.units import (
     ANGULAR_SPEED,
     LENGTH,
     MASS,
+    NOT_FOUND,
     Dimension,
     Unit,
     amplitude_sentence,
     amplitudes_are,
+    in_rpm,
+    number,
     unit_for,
 )
 from leblanc.scene.schema.load import SceneError, SceneFault
 from leblanc.studies.sweep.outputs import Answers, RunupAnswers
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags, Index
 from meshes.quantity import Q
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -38,6 +41,8 @@ _OUTPUTS = {**quantities(Answers), **quantities(RunupAnswers)}
 # Those whose sensitivities are shown.
 _SHARED = "peak_amplitude", "last_amplitude", "peak_growth", "top_speed", "walking_margin", "clearance"
 _SHOWN = 10  # kinds of reasons
+_ROWS = 12  # of the table over a value
+_ALIKE = 1e-3  # relative: amplitudes as near as this are equal, which is less than any model is off
 
 
 @dataclass(frozen=True)
@@ -119,6 +124,66 @@ class Reason:
 
 
 @dataclass(frozen=True)
+class OverValue:
+    """Outputs over the one field that varies on a grid, shape (n,); numbers in rising order."""
+
+    name: str  #: of the field, in words
+    value: Array  #: SI, or the number of the option
+    options: tuple[str, ...]  #: what the values are where they are no numbers; else empty
+    unit: Unit  #: in which a person would write the values
+    outputs: Mapping[str, Array]  #: amplitudes at the last speed and the largest; growth rate of a `run`
+    stable: Flags | None = None  #: at the last speed; None of run-ups
+    stable_speeds: Index | None = None  #: at how many speeds, None of run-ups
+
+    @property
+    def label(self) -> str:
+        """What varies, with its unit."""
+        return f"{self.name} ({self.unit.name})" if self.unit.name else self.name
+
+    def text(self, k: int) -> str:
+        """One value as printed, without its unit."""
+        return self.options[int(self.value[k])] if self.options else self.unit.number(float(self.value[k]))
+
+    @property
+    def known(self) -> Flags:
+        """Where the last amplitude is known and stable; where it is nowhere stable, where it is known."""
+        known: Flags = np.isfinite(self.outputs["last_amplitude"])
+        steady = known if self.stable is None else known & self.stable
+        return steady if steady.any() else known
+
+    def sentence(self, where: str) -> str:
+        """The least last amplitude, at which value it is, and what more of it changes."""
+        name, count = self.name, self.value.size
+        last, known = self.outputs["last_amplitude"], self.known
+        if not known.any():
+            return f"None of {count} values of {name} has an amplitude {where}."
+        least = float(last[known].min())
+        near = known & (last <= least * (1.0 + _ALIKE))
+        best = int(np.argmax(near))
+        unstable = self.stable is not None and not self.stable[best]
+        size = f"{unit_for(LENGTH, least).text(float(last[best]))}{', unstable' if unstable else ''}"
+        if near.all() and count > 1:
+            return f"None of {count} values of {name} changes the amplitude {where}, {size}, by 0.1 %."
+        unit = "" if self.options else f" {self.unit.name}".rstrip()
+        found = (
+            f"Of {count} values of {name} the least amplitude {where}, {size}, is at {self.text(best)}{unit}"
+        )
+        same = best + int(np.argmin(np.append(near[best:], False))) - 1  # up to there all are as small
+        if self.options:
+            pass
+        elif same > best:
+            upto = "" if same == count - 1 else f"up to {self.text(same)}{unit} "
+            found += f"; {upto}more changes nothing (under 0.1 %)"
+            if upto and np.isfinite(last[same + 1]) and not known[same + 1]:
+                found += ", beyond that it is unstable"
+        elif best in (0, count - 1):
+            found += f", the {'largest' if best else 'smallest'} of them"
+        if bool(np.any(last[np.isfinite(last) & ~known] < least)):
+            found += "; what is less is unstable"
+        return f"{found}."
+
+
+@dataclass(frozen=True)
 class SweepAnswer(Answer):
     """What many scenes answered.
 
@@ -158,6 +223,7 @@ class SweepAnswer(Answer):
     command_of: str = "run"  #: that answered each sample
     #: path and words of what varies, "uniform from 3 kg to 12 kg"
     varied: tuple[tuple[str, str], ...] = ()
+    over_value: OverValue | None = None  #: where exactly one field varies on a grid
     netcdf: bool = False  #: its file is written
     emulators: Annotated[
         Mapping[str, Emulated | NotEmulated] | None,
@@ -196,15 +262,24 @@ class SweepAnswer(Answer):
 
     def blocks(self) -> tuple[Block, ...]:
         emulators = (self.emulators or {}).items()
-        outputs = Table([self._row(name) for name in self.outputs], _HEAD, right=True)
+        over = self.over_value
+        first: tuple[Block, ...] = ()
+        if over is None:
+            title = "How the amplitudes spread"
+            outputs = Table([self._row(name) for name in self.outputs], _HEAD, right=True)
+        else:
+            first = (Headline(over.sentence(self.at_last), one_line(self.scene), shown="both"),)
+            title = f"Amplitude over {over.name}"
+            outputs = self._values(over)
         counts = [f"{one.samples} of {self.samples} samples: {one.reason}" for one in self.reasons[:_SHOWN]]
         return (
+            *first,
             Table(self._facts(), shown="page"),
             *([Table(self.varied, ("Varied", "how"), shown="page")] if self.varied else []),
-            Picture("sweep", "How the amplitudes spread", self.figure),
+            Picture("sweep", title, self.figure),
             outputs,
             Words(amplitude_sentence(self.plane)),
-            *self._shares(),
+            *(self._shares() if over is None else ()),
             *(Words(f"emulator of {name.replace('_', ' ')}: {one.words()}") for name, one in emulators),
             Notes(counts),
             Words(f"The data are in {path_text(self.store)}"),
@@ -217,6 +292,8 @@ class SweepAnswer(Answer):
             ("Answered by", "leblanc run" if self.command_of == "run" else "leblanc runup, in time"),
             amplitudes_are(self.plane),
         ]
+        if self.over_value is not None:
+            return rows
         if self.command_of == "runup":
             rows.append(("Highest speed reached", self.spread("top_speed", ANGULAR_SPEED)))
         if self.speeds > 1:
@@ -225,6 +302,33 @@ class SweepAnswer(Answer):
         last = "Amplitude at the last speed" if self.command_of == "run" else "Amplitude at the end"
         rows.append((last, self.spread("last_amplitude")))
         return [*rows, ("The same without liquid", self.spread("last_amplitude_dry"))]
+
+    @property
+    def at_last(self) -> str:
+        """Where the last amplitude is, "at 1200 rpm"."""
+        if self.command_of == "runup":
+            return "at the end"
+        return "at the last speed" if self.speed is None else f"at {in_rpm(float(self.speed[-1]))}"
+
+    def _values(self, over: OverValue) -> Table:
+        """Some rows over the value, evenly chosen, the first and the last among them."""
+        names = ["last_amplitude", "last_amplitude_dry"]
+        names += ["peak_amplitude", "peak_amplitude_dry"] if self.speeds > 1 else []
+        unit = unit_for(LENGTH, *np.concatenate([over.outputs[name] for name in names]).tolist())
+        head = [over.label, f"{self.at_last} ({unit.name})", "without liquid"]
+        head += [f"largest ({unit.name})", "without liquid"] if self.speeds > 1 else []
+        if over.stable_speeds is not None:
+            head += ["growth (1/s)", "stable" if self.speeds == 1 else "stable speeds"]
+        rows = []
+        for k in np.unique(np.linspace(0, over.value.size - 1, _ROWS).round().astype(np.int64)).tolist():
+            row = [over.text(k), *(unit.number(float(over.outputs[name][k])) for name in names)]
+            if over.stable_speeds is not None:
+                count = int(over.stable_speeds[k])
+                words = ("no", "yes")[count] if self.speeds == 1 else f"{count} of {self.speeds}"
+                row.append(number(float(over.outputs["peak_growth"][k])))
+                row.append(words if np.isfinite(over.outputs["last_amplitude"][k]) else NOT_FOUND)
+            rows.append(row)
+        return Table(rows, head, right=True)
 
     def spread(self, name: str, dimension: Dimension = LENGTH) -> str:
         """Median of an output and the range of nine samples in ten."""

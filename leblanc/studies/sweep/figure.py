@@ -19,25 +19,30 @@ from leblanc.plotting.page import (
     number,
     style,
 )
-from leblanc.studies.run.figure import DRY, SHARE, WET, value_axis, wider_words
+from leblanc.studies.run.figure import DOWN, DRY, SHARE, UNSTABLE, WET, value_axis, wider_words
 from leblanc.studies.run.notes import plane_label
-from leblanc.studies.sweep.answer import SweepAnswer
+from leblanc.studies.sweep.answer import OverValue, SweepAnswer
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
 OVER_SPEED = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
+OVER_VALUE = Frame(left=0.72, top=0.12, between=0.12, below=0.42)
 BOXES = Frame(left=1.85, top=0.12, between=0.45, below=0.42)
+FEW = 60  # points that are marked each
 PANEL, ROW = 2.9, 0.32  # inches: a panel over speed, a box
 WIDE, NARROW = "#BFDCEC", "#7FB9DA"  # tints of the colour with liquid, apart in grey as well
 BARE = {"color": DRY, "linewidth": 1.0, "markerfacecolor": "white"}
 
 
 def sweep_figure(answer: SweepAnswer) -> Figure:
-    """Amplitude over speed with the ranges of the samples; of one speed, or of speeds that differ, boxes."""
+    """Amplitude over the one value of a grid; else over speed with the ranges of the samples, or boxes."""
     with style():
         figure = Figure()
-        if answer.speed is not None and answer.speed.size > 1:
+        if answer.over_value is not None:
+            figure.alt = answer.over_value.sentence(answer.at_last)
+            _over_value(figure, answer, answer.over_value)
+        elif answer.speed is not None and answer.speed.size > 1:
             what = "Median and ranges of the amplitude over speed; largest amplitude"
             figure.alt = f"{what}: {answer.spread('peak_amplitude')}."
             _over_speed(figure, answer, answer.speed)
@@ -46,6 +51,47 @@ def sweep_figure(answer: SweepAnswer) -> Figure:
             figure.alt = f"{what}; amplitude at the last speed: {answer.spread('last_amplitude')}."
             _boxes(figure, answer)
     return figure
+
+
+def _over_value(figure: Figure, answer: SweepAnswer, over: OverValue) -> None:
+    """Last and largest amplitude, with liquid solid, without dashed; where the last is unstable."""
+    pairs = [("last_amplitude", answer.at_last, WET)]
+    pairs += [("peak_amplitude", "largest", DOWN)] if answer.speeds > 1 else []
+    lines = {key: over.outputs[key] * MM for name, _, _ in pairs for key in (name, f"{name}_dry")}
+    drawn = thin(np.column_stack([*lines.values()]), COLUMNS)
+    x = over.value * over.unit.count
+    axes: Any = figure.add_axes((0, 0, 1, 1))
+    few = drawn.size <= FEW
+    for name, label, colour in pairs:
+        for key, dashes in ((name, "solid"), (f"{name}_dry", UNSTABLE)):
+            bare = key != name
+            mark = {"marker": "o", "markersize": 3.0} if few and not bare else {}
+            text = f"{label}, {'without' if bare else 'with'} liquid"
+            axes.plot(x[drawn], lines[key][drawn], color=colour, linestyle=dashes, label=text, **mark)
+    if over.stable is not None and (known := ~over.stable & np.isfinite(lines["last_amplitude"])).any():
+        mark = {"color": "0.15", "marker": "x", "linestyle": "none", "zorder": 3, "clip_on": False}
+        axes.plot(x[known], lines["last_amplitude"][known], label=f"unstable {answer.at_last}", **mark)
+    top = max((float(line[np.isfinite(line)].max(initial=0.0)) for line in lines.values()), default=0.0)
+    axes.set_ylim(0.0, 1.08 * top or 1.0)
+    if over.options:
+        axes.set_xticks(range(x.size), [one_line(over.text(k)) for k in range(x.size)])
+        axes.set_xlim(-0.5, x.size - 0.5)
+    else:
+        room = 0.02 * (x[-1] - x[0]) or 1.0
+        axes.set_xlim(x[0] - room, x[-1] + room)
+        axes.xaxis.set_major_formatter(number)
+    axes.yaxis.set_major_formatter(number)
+    axes.set_xlabel(over.label)
+    axes.set_ylabel(_amplitude_label(answer))
+    text = f"Amplitude {answer.at_last} over {over.name}."
+    if answer.speeds > 1:
+        text = f"Amplitude {answer.at_last} and largest amplitude over {over.name}."
+    lay_out(figure, [[axes]], [PANEL], OVER_VALUE, _caption(answer, text))
+
+
+def _amplitude_label(answer: SweepAnswer) -> str:
+    place = plane_label("chamber" in answer.plane) if answer.plane else ""
+    return f"Amplitude{place} ({MM_PEAK})"
 
 
 def _over_speed(figure: Figure, answer: SweepAnswer, speed: Array) -> None:
@@ -87,7 +133,7 @@ def _draw(axes: Axes, answer: SweepAnswer, lines: tuple[Array, Array, Array], li
     axes.plot(rpm, dry, label="median without liquid", marker="o", markevery=every, **BARE)
     value_axis(axes, 0.0, [(rpm, line) for line in (*wet.T, dry)])
     axes.set_xlim(*limits)
-    axes.set_ylabel(f"Amplitude{plane_label('chamber' in answer.plane) if answer.plane else ''} ({MM_PEAK})")
+    axes.set_ylabel(_amplitude_label(answer))
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)
     axes.yaxis.set_minor_formatter("")

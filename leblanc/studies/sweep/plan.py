@@ -5,10 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from os import PathLike
 from pathlib import Path
+from textwrap import shorten
 from typing import Annotated, Any
 
 import numpy as np
@@ -17,7 +20,7 @@ from pydantic import Field, PlainValidator, ValidationError
 from leblanc.core import units
 from leblanc.core.files import native, path_text
 from leblanc.core.units import allowed_as_typed
-from leblanc.scene.scene import Scene, fault_in, require_whirl, scene_from_table
+from leblanc.scene.scene import Scene, SceneOrPath, fault_in, require_whirl, scene_from_table
 from leblanc.scene.schema.load import (
     SceneError,
     SceneFault,
@@ -44,6 +47,8 @@ from leblanc.scene.schema.rules import (
 from leblanc.studies.sweep.outputs import Kept, kept_of
 from meshes.arrays import Array
 from meshes.errors import InputError
+
+Vary = Mapping[str, tuple[Mapping[str, Any], str]]  #: distribution of a grid and its text, by paths
 
 MAX_LEVELS = 1_000_000
 MAX_CHOICES = 1000
@@ -348,20 +353,148 @@ class Sweep:
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def study_of(study: Sweep | Mapping[str, Any] | str | PathLike[str], field: str = "study") -> Sweep:
-    """A sweep itself, that of a table, or the one of that study file."""
+def study_of(study: Sweep | SceneOrPath, field: str = "study") -> Sweep:
+    """A sweep itself, that of a table, or that of a file; of a machine one in which nothing varies yet."""
     if isinstance(study, Mapping):
         return _sweep_of(study, "")
-    if not isinstance(study, Sweep | str | PathLike):
-        raise InputError(field, type(study).__name__, "the path of a study file, or its table")
+    if not isinstance(study, Sweep | Scene | str | PathLike):
+        raise InputError(field, type(study).__name__, "a machine, a study, or the path of its file")
+    if isinstance(study, Scene):
+        return _unvaried(study)
     return study if isinstance(study, Sweep) else load_sweep(study)
 
 
 def load_sweep(path: str | PathLike[str]) -> Sweep:
-    """Sweep from a study file."""
+    """Sweep from a study file; of a machine file one in which nothing varies yet."""
     text = read_text(path)
     with with_lines(path):
-        return replace(_sweep_of(toml_of(text, path), path), text=text)
+        given = toml_of(text, path)
+        if is_machine(given):
+            return _unvaried(Scene.from_toml(text, str(path)))
+        return replace(_sweep_of(given, path), text=text)
+
+
+def is_machine(given: Mapping[str, Any]) -> bool:
+    """The content of a file is a machine, no study."""
+    return "rotor" in given and "vary" not in given
+
+
+def _unvaried(scene: Scene) -> Sweep:
+    """A grid of one machine."""
+    _require_answered(scene, "run")
+    file = scene.file or "scene"
+    return Sweep(scene.name, file, scene.table(), scene, method="grid", points=1, seed=0, fields=())
+
+
+def _require_answered(scene: Scene, command: str) -> None:
+    """Refuse a machine that the command does not answer."""
+    try:
+        require_whirl(scene)
+        if command == "runup":
+            from leblanc.studies.runup.study import require_runup
+
+            require_runup(scene)
+    except InputError as error:
+        raise ((fault_in(scene.file, error) if scene.file else None) or error) from error
+
+
+_FORM = "PATH=LOW..HIGH:COUNT or PATH=A,B,C, such as chambers.0.volume='0.1 l..1.9 l:20'"
+_MIXED = "values that all have a unit, or none (SI): '0 l..1.9 l:20', '0 l,0.5 l,1 l'"
+
+
+def vary_of(given: Mapping[str, Any] | Sequence[str], field: str = "vary") -> Vary:
+    """What varies on a grid: texts or lists of values by their paths, or texts PATH=VALUES as typed."""
+    pairs: list[tuple[Any, Any]]
+    if isinstance(given, Mapping):
+        pairs = list(given.items())
+    elif isinstance(given, list | tuple) and all(isinstance(text, str) for text in given):
+        parts = (path_text(text).partition("=") for text in given)
+        pairs = [(path.strip(), values.strip()) for path, _, values in parts]
+    else:
+        raise InputError(field, type(given).__name__, f"a table of values by their paths, or {_FORM}")
+    found: dict[str, tuple[Mapping[str, Any], str]] = {}
+    for path, values in pairs:
+        values = values.tolist() if hasattr(values, "tolist") else values
+        said = ",".join(map(str, values)) if isinstance(values, list | tuple) else str(values)
+        typed = shorten(f"{path}={said}", 80, placeholder="...")
+        if path in found:
+            raise InputError(field, typed, "given once for each path")
+        found[path] = (_grid_of(path, values, typed, field), typed)
+    return found
+
+
+def _grid_of(path: Any, values: Any, typed: str, field: str) -> Mapping[str, Any]:
+    """The distribution of a grid that is typed as "LOW..HIGH:COUNT" or "A,B,C", or a list of values."""
+    if not isinstance(path, str) or not path or not values or not isinstance(values, str | list | tuple):
+        raise InputError(field, typed, _FORM)
+    low, range_, rest = values.partition("..") if isinstance(values, str) else ("", "", "")
+    if range_:
+        high, colon, count = map(str.strip, rest.rpartition(":"))
+        if not colon and low.strip() and count:
+            raise InputError(field, typed, f"PATH=LOW..HIGH:COUNT, such as {path}='{values}:20'")
+        if not low.strip() or not high or not count.isdecimal() or len(count) > _DIGITS:
+            raise InputError(field, typed, _FORM)
+        listed = [_typed(low), _typed(high)]
+        made: Mapping[str, Any] = {"linspace": [*listed, int(count)]}
+    else:
+        listed = _listed(values) if isinstance(values, str) else list(values)
+        if len(listed) < 2:
+            raise InputError(field, typed, f"{_FORM}; --set takes a single value")
+        made = {"choice": listed}
+    plain = [isinstance(value, float | int) for value in listed]
+    if any(plain) and any(isinstance(value, str) and _SIZE.match(value) for value in listed):
+        raise InputError(field, typed, _MIXED)
+    return made
+
+
+_DIGITS = 9  # of how many
+_SIZE = re.compile(r"[+-]?\.?\d")  # that a quantity begins with
+
+
+def _listed(text: str) -> list[Any]:
+    """Values between commas, which those of TOML may have as well."""
+    with suppress(SceneError):
+        found: list[Any] = toml_of(f"values = [{text}]", "vary")["values"]
+        return found
+    return [_typed(part) for part in text.split(",")]
+
+
+def _typed(text: str) -> Any:
+    """A value as TOML where it is one, else a text."""
+    with suppress(SceneError):
+        return toml_of(f"value = {text}", "vary")["value"]
+    return text.strip()
+
+
+def varied(sweep: Sweep, vary: Vary) -> Sweep:
+    """A sweep with further fields on its grid, or others in their place; refused where none varies."""
+    fields = {field.path: field for field in sweep.fields}
+    for path, (given, typed) in vary.items():
+        if sweep.method != "grid":
+            raise InputError("vary", typed, f"left out of a study whose method is {sweep.method}, not grid")
+        try:
+            (fields[path],) = _fields({path: given}, sweep.table, "", sweep.command, "grid")
+            if faults := _nested(fields, ""):
+                raise SceneError(faults)
+        except SceneError as error:
+            raise InputError("vary", typed, error.faults[0].allowed) from error
+    if not fields:
+        study = "`leblanc new --example studies/fill_grid` writes a study file"
+        raise InputError("vary", None, f"given with a machine file: --vary {_FORM}; {study}")
+    if not vary:
+        return sweep
+    grid = _grid(sweep, tuple(fields.values()))
+    try:
+        _check_size(grid, "")
+    except SceneError as error:
+        raise InputError("vary", grid.points, error.faults[0].allowed) from error
+    return grid
+
+
+def _grid(sweep: Sweep, fields: tuple[VariedField, ...]) -> Sweep:
+    """A sweep over every combination of values."""
+    sizes = [int(field.distribution.levels().size) for field in fields]  # type: ignore[union-attr]
+    return replace(sweep, fields=fields, points=math.prod(sizes))
 
 
 def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
@@ -371,9 +504,8 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
     base = base.table() if isinstance(base, Scene) else base
     if not path and isinstance(base, Mapping):
         given = {**given, "scene": "scene"}
-    if "rotor" in given and "vary" not in given:
-        text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
-        raise SceneError([SceneFault(file, "", None, text)])
+    if is_machine(given):
+        return _unvaried(scene_from_table(given))
     try:
         table = Study.model_validate(given)
     except ValidationError as error:
@@ -386,45 +518,37 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
         content = scene_table(scene_text, scene_path)
         with with_lines(scene_path):
             scene = scene_from_table(content, str(scene_path), scene_text)
-    try:
-        require_whirl(scene)
-        if table.command == "runup":
-            from leblanc.studies.runup.study import require_runup
-
-            require_runup(scene)
-    except InputError as error:
-        raise ((fault_in(scene.file, error) if scene.file else None) or error) from error
-    fields = _fields(table, content, file)
-    points = table.samples
-    if points is None:
-        sizes = [int(field.distribution.levels().size) for field in fields]  # type: ignore[union-attr]
-        points = math.prod(sizes)
+    _require_answered(scene, table.command)
+    fields = _fields(table.vary, content, file, table.command, table.method)
     sweep = Sweep(
         name=path_text(Path(path).stem) if path else scene.name,
         scene_path=table.scene,
         table=content,
         scene=scene,
         method=table.method,
-        points=points,
+        points=table.samples or 1,
         seed=table.seed,
         fields=fields,
         command=table.command,
         check=table.check,
     )
+    sweep = _grid(sweep, fields) if table.samples is None else sweep
     _check_size(sweep, file)
     return sweep
 
 
-def _fields(study: Study, scene: Mapping[str, Any], file: str) -> tuple[VariedField, ...]:
+def _fields(
+    vary: Mapping[str, Any], scene: Mapping[str, Any], file: str, command: str, method: str
+) -> tuple[VariedField, ...]:
     """The varied fields, or all faults of them."""
     faults: list[SceneFault] = []
     fields = []
-    for path, given in study.vary.items():
+    for path, given in vary.items():
         where: tuple[str, ...] = ("vary", path)
         value: object = None
         try:
-            rule = rule_at(Scene, scene, path, study.command)
-            kind = _kind(given, study.method)
+            rule = rule_at(Scene, scene, path, command)
+            kind = _kind(given, method)
             where, value = (*where, kind), given[kind]
             distribution = KINDS[kind](value, rule)
         except ValidationError as error:  # of a table that stands for the value, as a liquid's
@@ -439,7 +563,7 @@ def _fields(study: Study, scene: Mapping[str, Any], file: str) -> tuple[VariedFi
             continue
         unit = rule.dimension.unit if isinstance(rule, Quantity | Several) else ""
         fields.append(VariedField(path, unit or "1", distribution))
-    faults = faults or _nested(study.vary, file)
+    faults = faults or _nested(vary, file)
     if faults:
         raise SceneError(faults)
     return tuple(fields)

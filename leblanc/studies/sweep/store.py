@@ -273,6 +273,7 @@ def _same(path: Path, found: Mapping[str, Any], own: Mapping[str, Any]) -> None:
     """Refuse to go on with what another sweep, or other code, has begun."""
     if found.get("digest") != own["digest"]:
         allowed = "the store of this study and scene, which have changed since; --fresh starts anew"
+        allowed += ", --out DIR keeps both"
         raise InputError("store", str(path), allowed)
     for key in own:
         if key.startswith("version_") and found.get(key) != own[key]:

@@ -19,20 +19,24 @@ import numpy as np
 
 from leblanc.core.files import out_dir
 from leblanc.core.progress import update
+from leblanc.core.units import NUMBER, Unit, unit_for
 from leblanc.liquid.notes import slowed_by
+from leblanc.scene.scene import Scene
 from leblanc.scene.schema.load import SceneError, SceneFault, shown
+from leblanc.scene.schema.paths import path_words, rule_at
 from leblanc.studies.held.holding import cores
 from leblanc.studies.run.notes import plane_words
-from leblanc.studies.sweep.answer import QUANTILES, Reason, Statistics, SweepAnswer
+from leblanc.studies.sweep.answer import QUANTILES, OverValue, Reason, Statistics, SweepAnswer
 from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, Block, BlockAnswer, answered
 from leblanc.studies.sweep.cluster import answer_blocks, require_scheduler
-from leblanc.studies.sweep.plan import Sweep
+from leblanc.studies.sweep.plan import Sweep, Vary, varied
 from leblanc.studies.sweep.sampling import Rows, sample_rows
 from leblanc.studies.sweep.sensitivity import sensitivity
 from leblanc.studies.sweep.store import Store, field_values, locked, open_store, read_store, write_block
 from meshes.arrays import Array
 from meshes.errors import InputError
 
+OVER_VALUE = ("last_amplitude", "last_amplitude_dry", "peak_amplitude", "peak_amplitude_dry", "peak_growth")
 OVER_SPEED = ("amplitude", "amplitude_dry", "amplitude_without")
 _VALUES = 4_000_000  # read at once
 _ROUNDING = 1e-12  # of the largest: numbers as near as this are equal
@@ -42,6 +46,7 @@ _NUMBER = re.compile(r"(?<![\w.])[-+]?\d[\w.+-]*")
 def answer_sweep(
     study: Sweep,
     out: str | PathLike[str] | None = None,
+    vary: Vary | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
     fresh: bool = False,
@@ -49,6 +54,7 @@ def answer_sweep(
     """Answer what the store does not hold yet, and say what all samples have in common."""
     if workers is not None and workers < 0:
         raise InputError("workers", workers, "0 or more")
+    study = varied(study, vary or {})
     folder = out_dir(study.name, None if out is None else Path(out))
     return summarise(run_sweep(study, folder, workers, scheduler, fresh), study)
 
@@ -202,8 +208,37 @@ def summarise(store: Store, sweep: Sweep) -> SweepAnswer:
             name: _over_speed(store, name, kept.speeds) for name in OVER_SPEED if name in kept.outputs
         },
         sensitivity=shares,
+        over_value=_over_value(store, sweep, drawn),
         digest=sweep.digest,
         plane="" if sweep.scene.rotor.kind == "jeffcott" else _plane(sweep),
+    )
+
+
+def _over_value(store: Store, sweep: Sweep, drawn: Array) -> OverValue | None:
+    """Outputs over the one field that varies on a grid; None where more vary, or at random."""
+    if sweep.method != "grid" or len(sweep.fields) != 1:
+        return None
+    (field,) = sweep.fields
+    value = drawn[:, 0]
+    options: tuple[str, ...] = ()
+    unit = Unit("", 1.0)
+    if field.categorical:
+        options = tuple(str(text) for text in field_values(field, value))
+    else:
+        value = np.array([field.value(one) for one in value], dtype=np.float64)
+        rule = rule_at(Scene, sweep.table, field.path, sweep.command)
+        unit = unit_for(getattr(rule, "dimension", NUMBER), *value.tolist())
+    order = np.argsort(value, kind="stable")
+    names = [name for name in OVER_VALUE if name in sweep.kept.outputs]
+    stable = store.read("stable")[order] == 1 if "stable" in sweep.kept.outputs else None
+    return OverValue(
+        name=path_words(field.path, chambers=len(sweep.scene.chambers)),
+        value=value[order],
+        options=options,
+        unit=unit,
+        outputs={name: store.read(name)[order] for name in names},
+        stable=None if stable is None else stable[:, -1],
+        stable_speeds=None if stable is None else np.count_nonzero(stable, axis=1),
     )
 
 

@@ -179,14 +179,6 @@ def test_all_faults_are_named_at_once(tmp_path: Path) -> None:
     assert len(caught.value.faults) == 2
 
 
-def test_a_scene_is_no_study(tmp_path: Path) -> None:
-    path = tmp_path / "rig.toml"
-    path.write_text(SCENE, encoding="utf-8")
-    with pytest.raises(SceneError, match="this is a scene, which `leblanc run` answers") as caught:
-        load_sweep(path)
-    assert len(caught.value.faults) == 1
-
-
 def test_units_and_order_of_keys_do_not_change_the_digest_and_values_do(tmp_path: Path) -> None:
     own = study_in(tmp_path).digest
     assert study_in(tmp_path, STUDY.replace('"3 kg"', "3.0"), SCENE.replace('"4 kg"', "4.0")).digest == own
