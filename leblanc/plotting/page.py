@@ -248,7 +248,7 @@ def lay_out(
     # Curves and points before what marks ranges.
     order = sorted(entries, key=lambda label: _marks_range(entries[label]))
     listed, rest = order[:MOST_ENTRIES], order[MOST_ENTRIES:]
-    if rest and (panels := _by_panel(rows, order)):
+    if rest and len(rows) > 1 and (panels := _by_panel(rows, order)):
         listed, rest = [], _own_legends(panels)
     text = Caption(caption) if isinstance(caption, str) else caption
     besides = "; ".join(f"{look(entries[label])}, {label}" for label in rest)

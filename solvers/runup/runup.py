@@ -337,7 +337,7 @@ def _with_errors(
         apart = [_gap(coarse, run, crests[id(coarse)], _over_a_turn(run)) for run in ended]
         widest = np.fmax.reduce(apart)
         known = ~np.isnan(widest)
-        band = band + np.interp(history.time, coarse.time[known], widest[known])
+        band += np.interp(history.time, coarse.time[known], widest[known])
     known = ~np.isnan(band)
     whole = np.interp(history.time, history.time[known], band[known])
     return replace(

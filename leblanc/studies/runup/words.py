@@ -60,7 +60,7 @@ IN_TABLES = (
 _CAUSES = {
     "cells": "cells and steps",
     "handover": "pool-annulus transition",
-    "rounding": "the last digits of the unbalance",
+    "rounding": "rounding",
 }
 _SEEN = 1e-3  # of the amplitude, from which on a part of its error is named
 _HERE = "leblanc.studies.runup.figure"

@@ -75,8 +75,9 @@ def test_limit_cycles_are_marked_and_their_whirl_drawn() -> None:
     np.testing.assert_array_equal(spin.get_xdata(), spin.get_ydata())
     low, high = figure.axes[1].get_ylim()
     assert low <= 0.0 and high > 2000.0
-    listed = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert len(listed) == 5 and listed[0] == "least to largest over time"
+    above, below = ([text.get_text() for text in axes.get_legend().get_texts()] for axes in figure.axes[:2])
+    assert len(above) == 5 and above[0] == "least to largest over time"
+    assert below == ["limit cycle: whirl", "spin"]
     assert "with liquid, limit cycle" in figure.caption.shown.partition("Besides: ")[2]
     # A limit cycle is no unstable answer: what is drawn so begins and ends beside the speed that was lost.
     unstable = line(figure, "with liquid, unstable")

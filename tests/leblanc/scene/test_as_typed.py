@@ -103,13 +103,16 @@ def test_other_plates_are_refused(given: dict[str, Any], said: str) -> None:
         plates(**given)
 
 
-@kills("leblanc.liquid.validity:_cure", "/ len(rotor.springs)", "* len(rotor.springs)")
+@kills("leblanc.liquid.validity:_cure", "/ hanging", "* hanging")
+@kills("leblanc.liquid.validity:_carries", "spring.stiffness[2] > 0.0", "True")
 def test_a_tub_that_hangs_is_told_what_holds_it() -> None:
-    """Its weight on two springs of 300 mm."""
+    """Its weight on two springs of 300 mm, whatever others hold it sideways."""
     table = example("front_loader").table()
     table["rotor"]["springs"] = [
         {"position": [x, 0.0, 0.22], "direction": [0.0, 0.0, 1.0], "stiffness": 8e3} for x in (0.2, -0.2)
     ]
+    sideways = {"position": [0.2, 0.0, 0.0], "stiffness": [500.0, 0.0, 0.0]}
+    table["rotor"]["springs"].append(sideways)
     table["assumed"] = []
     scene = scene_from_table(table)
     force = (scene.rotor.tub_mass + scene.rotor.drum_mass) * 9.81 / 2.0  # type: ignore[union-attr]

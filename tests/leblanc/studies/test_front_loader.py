@@ -102,12 +102,12 @@ def test_what_a_reader_is_told() -> None:
     assert peak_known(found) == "" and "for all of the run" in sentence(found)
     largest = float(found.history.largest.max())
     for gaps, told in (
-        ((0.01, math.nan), "(1 %)"),
-        ((0.04, 0.0), "(4 %)"),
-        ((0.15, 0.05), "(20 %): cells and steps 15 %, pool-annulus transition 5 %"),
-        ((0.05, 0.15), "(20 %): cells and steps 5 %, pool-annulus transition 15 %"),
+        ((0.01, math.nan, math.nan), "(1 %)"),
+        ((0.04, 0.0, 1e-9), "(4 %)"),
+        ((0.15, 0.05, 0.0), "(20 %): cells and steps 15 %, pool-annulus transition 5 %"),
+        ((0.05, 0.13, 0.02), "(20 %): cells and steps 5 %, pool-annulus transition 13 %, rounding 2 %"),
     ):
-        history = replace(found.history, peak_gaps=(gaps[0] * largest, gaps[1] * largest))
+        history = replace(found.history, peak_gaps=tuple(gap * largest for gap in gaps))
         one = replace(found, history=history)
         assert peak_known(one).endswith(told) and peak_known(one) in sentence(one)
         assert ("Largest of all known to", peak_known(one)) in known(one)

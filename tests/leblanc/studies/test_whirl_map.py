@@ -371,7 +371,7 @@ def test_over_any_number_in_files(tmp_path: Path) -> None:
     again = lb.open(tmp_path / "map.nc")
     np.testing.assert_array_equal(again.growth, found.growth)
     panel = map_figure(found).axes[0]
-    assert panel.get_ylabel() == "rotor.damping (N*s/m)" and panel.get_yscale() == "linear"
+    assert panel.get_ylabel() == "damping (N*s/m)" and panel.get_yscale() == "linear"
     assert found.to_json()["paths"] == ["rotor.damping"]
     assert not {"paths", "value", "scene_value"} & set(small().to_json())
 
