@@ -229,7 +229,7 @@ def headline_error(result: RunAnswer) -> str:
         return ""
     places = [(top, "of the largest amplitude"), (-1, f"at {in_rpm(float(result.curve.speed[-1]))}")]
     told = [f"{_error_words(error_at(result, index))} {place}" for index, place in places]
-    return told[-1] if result.speed.size == 1 else ", ".join(told)
+    return f"{told[-1] if result.speed.size == 1 else ', '.join(told)} (of the liquid model)"
 
 
 def _error_words(error: float) -> str:
