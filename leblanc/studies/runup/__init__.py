@@ -48,7 +48,11 @@ def runup(
 
 
 def present(
-    answer: Any, *, animate: Annotated[Any, _FILM, "GIF or MP4 of the chambers and of the amplitude."] = None
+    answer: Any,
+    *,
+    animate: Annotated[
+        Any, _FILM, "Film of chambers and amplitude: .gif, .mp4, or .html, a page that plays."
+    ] = None,
 ) -> RunupAnswer:
     """What the command alone is asked for: a film of the layers that the run kept."""
     with_film: RunupAnswer = replace(answer, film=animate)
