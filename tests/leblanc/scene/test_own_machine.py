@@ -252,7 +252,7 @@ def test_what_takes_no_such_machine_says_so(
 
 @kills("leblanc.scene.scene:require_whirl", "*WITHOUT_CHAMBERS, ", "*WITHOUT_CHAMBERS[1:], ")
 @kills("leblanc.studies.layer.study:_of_machine", "require_whirl(scene)", "pass")
-@kills("leblanc.studies.sweep.plan:_sweep_of", "require_whirl(scene)", "pass")
+@kills("leblanc.studies.sweep.plan:_require_answered", "require_whirl(scene)", "pass")
 @pytest.mark.parametrize("name", ["vibratory_table", "spindle", "blood_pump"])
 def test_a_machine_that_does_not_whirl_is_refused_alike(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
