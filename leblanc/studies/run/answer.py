@@ -320,6 +320,7 @@ class RunAnswer(Answer):
             Table(rows, head, shown="page"),
             words.resonance_table(self),
             Table(words.facts(self), shown="page"),
+            words.mode_table(self),
             Checks(words.checks(self)),
         )
         elsewhere = (*(OF_MODELS if self.models else ()), RunCode.HELD)

@@ -227,7 +227,7 @@ def headline_error(result: RunAnswer) -> str:
     top = result.curve.top
     if result.chamberless or result.error_estimate is None or top is None:
         return ""
-    places = [(top, "of the largest amplitude"), (-1, f"at {in_rpm(float(result.curve.speed[-1]))}")]
+    places = [(top, "at the largest amplitude"), (-1, f"at {in_rpm(float(result.curve.speed[-1]))}")]
     told = [f"{_error_words(error_at(result, index))} {place}" for index, place in places]
     return f"{told[-1] if result.speed.size == 1 else ', '.join(told)} (of the liquid model)"
 
@@ -337,6 +337,15 @@ def three_digits(value: float) -> str:
     return NOT_FOUND if math.isnan(value) else "infinite" if math.isinf(value) else f"{value:.3g}"
 
 
+def mode_table(result: RunAnswer) -> Table:
+    """Modes without liquid at rest, each with what it does by share of kinetic energy; empty without tilt."""
+    modes = () if result.motion is None else result.motion.modes
+    rows = [
+        (number(mode.frequency / (2.0 * math.pi)), f"{mode.damping_ratio:.2g}", mode.moves) for mode in modes
+    ]
+    return Table(rows, ("Modes at rest (Hz)", "damping ratio", "motion"), shown="page")
+
+
 def resonance_table(result: RunAnswer) -> Table:
     """Each maximum over speed with its amplification factor and separation margin; empty of one alone."""
     both = {"with liquid": result.resonances, "without liquid": result.resonances_dry}
@@ -435,14 +444,14 @@ def _vibration(result: RunAnswer) -> list[tuple[str, str]]:
         return ", ".join(parts) + " rpm" if parts else "none"
 
     at_rest = [
-        f"{number(mode.frequency / (2.0 * math.pi))} Hz ({mode.damping_ratio:.2g}): {mode.moves}"
+        f"{number(mode.frequency / (2.0 * math.pi))} ({mode.damping_ratio:.2g})"
         for mode in result.motion.modes
     ]
     wet = [("Critical speeds with liquid", listed(result.motion.critical_speeds_wet))]
     return [
         *([] if result.chamberless else wet),
         ("Critical speeds without liquid", listed(result.motion.critical_speeds_dry)),
-        ("Natural frequencies at rest (damping ratios)", "; ".join(at_rest)),
+        ("Natural frequencies at rest (damping ratios)", ", ".join(at_rest) + " Hz"),
     ]
 
 

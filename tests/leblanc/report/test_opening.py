@@ -65,9 +65,9 @@ def test_the_doubt_names_the_two_gravest_limits_and_counts_the_rest() -> None:
     wanted = f"Caution: liquid model out of range: {out}; no annular layer (gravity dominates): {loose} "
     assert doubt(every) == f"{wanted}({len(failed) - 2} more under the limits)."
     aside = [check for check in every if check.grade <= Grade.NOTE]
-    said = doubt(aside, "2 % of the largest amplitude")
+    said = doubt(aside, "2 % at the largest amplitude")
     assert (
-        said == "No limit of the models touches these figures; estimated error 2 % of the largest amplitude."
+        said == "No limit of the models touches these figures; estimated error 2 % at the largest amplitude."
     )
 
 
