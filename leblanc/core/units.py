@@ -372,7 +372,14 @@ def allowed_as_typed(allowed: str, typed: object) -> str:
 
     Of a list its first text counts; without a unit the text stays as it is.
     """
-    return _POWERED.sub(lambda found: written_out(float(found[0])), _in_unit_typed(allowed, typed))
+    text = _POWERED.sub(lambda found: written_out(float(found[0])), _in_unit_typed(allowed, typed))
+    plain = isinstance(typed, float | int) and not isinstance(typed, bool)
+    # Nobody fills cubic metres in.
+    return (
+        f'{text} (a plain number is in m^3; litres are typed "{typed:g} l")'
+        if plain and text.endswith(" m^3")
+        else text
+    )
 
 
 def _in_unit_typed(allowed: str, typed: object) -> str:

@@ -141,6 +141,7 @@ CASES = (
     # bounds stand in the unit that was typed
     case('radius = "65 mm"\n', 'radius = "3e6 mm"\n', "chambers.0.radius", "from 0.001 to 1000000 mm"),
     case('"10 ml"', "0.002", "chambers.0.volume", "at most what the chamber holds, 0.000259181 m^3"),
+    case('"10 ml"', "1.2", "chambers.0.volume", 'a plain number is in m^3; litres are typed "1.2 l"'),
     case('"100 rad/s"', '"10 rpm"', "runup.stop", "above runup.start, 47.7465 rpm"),
     case(
         "[model]",
