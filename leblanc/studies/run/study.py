@@ -83,20 +83,24 @@ from solvers.whirl.laminar import Met
 _DIAGRAM = 121  # speeds of a Campbell diagram
 
 # What each coordinate of the rotors means, in words.
-# What a rotor does in each coordinate. Of a tub, whose drum turns about y, by the drum's axis; z is upwards
-# where that lies, y where it stands.
-_TUB = {
-    "horizontal": (
-        "sway across",
-        "surge along the drum",
-        "bounce",
-        "rocking about x",
-        "rolling about the drum",
-    ),
-    "vertical": ("sway along x", "bounce", "sway along z", "rocking about x", "turning about the drum"),
-}
-_LAST = {"horizontal": "yawing about the vertical", "vertical": "rocking about z"}
+# What a rotor does in each coordinate; a tub, whose drum turns about y, by its axis: z is upwards where the
+# axis lies, y where it stands.
 _MOTIONS = {"x": "sway along x", "y": "sway along y", "alpha": "rocking about x", "beta": "rocking about y"}
+_OF_TUB = {
+    "horizontal": {
+        "x": "sway across",
+        "y": "surge along the drum",
+        "z": "bounce",
+        "beta": "rolling about the drum",
+        "gamma": "yawing about the vertical",
+    },
+    "vertical": {
+        "y": "bounce",
+        "z": "sway along z",
+        "beta": "turning about the drum",
+        "gamma": "rocking about z",
+    },
+}
 _NAMED = 0.2  # of a mode's kinetic energy, from which a coordinate names it
 
 
@@ -166,8 +170,8 @@ def rest_modes(system: RotorSystem, axis: str) -> tuple[RestMode, ...]:
     shape = found.shape[0]
     energy = (shape.conj() * (system.mass @ shape)).real
     share = energy / energy.sum(axis=0)
-    tub = len(system.coordinates) == len(_TUB[axis]) + 1
-    names = [*_TUB[axis], _LAST[axis]] if tub else [_MOTIONS[name] for name in system.coordinates]
+    motions = _MOTIONS | (_OF_TUB[axis] if "z" in system.coordinates else {})
+    names = [motions.get(name, name) for name in system.coordinates]
     return tuple(
         RestMode(float(frequency), float(ratio), _named(names, part))
         for frequency, ratio, part in zip(found.frequency[0], found.damping_ratio[0], share.T, strict=True)

@@ -216,10 +216,10 @@ def error_at(result: RunAnswer, index: int) -> float:
     order = np.argsort(result.speed, kind="stable")
     speed, error = result.speed[order], result.error_estimate[order]
     at = result.curve.speed[index]
-    # Between two speeds the larger of theirs.
+    # Between two speeds the larger of theirs, not known where one is not.
     right = int(np.clip(np.searchsorted(speed, at), 0, speed.size - 1))
     left = right if speed[right] == at or right == 0 else right - 1
-    return float(max(error[left], error[right]))
+    return float(np.maximum(error[left], error[right]))
 
 
 def headline_error(result: RunAnswer) -> str:

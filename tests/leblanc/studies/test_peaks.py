@@ -24,7 +24,7 @@ from leblanc.studies.peaks import _distinct, responses_between
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.run.words import alts, answer, comparisons, effect, remarks, unseen
+from leblanc.studies.run.words import alts, answer, comparisons, effect, error_at, remarks, unseen
 from leblanc.studies.sweep.batch import answer_scenes
 from meshes.arrays import Array
 from solvers.synchronous.response import Response, by_speed, response
@@ -416,6 +416,22 @@ def test_the_direction_of_what_the_liquid_does() -> None:
     assert "(unstable): see leblanc runup." in wild and wild.count("%") == 1
     lying = effect(lb.run(lb.example("washing_machine")))
     assert "no annulus from rest below" in lying and lying.count("%") == 2  # one is the error
+
+
+@kills("leblanc.studies.run.words:error_at", "np.maximum(error[left]", "np.fmax(error[left]")
+@kills("leblanc.studies.run.words:error_at", "np.maximum(error[left]", "np.minimum(error[left]")
+def test_between_two_speeds_the_larger_error_counts_and_none_where_one_is_not_known() -> None:
+    found = lb.run(lb.example("runup"))
+    top = found.curve.top
+    assert top is not None and found.error_estimate is not None
+    right = int(np.searchsorted(found.speed, found.curve.speed[top]))
+    assert found.speed[right - 1] < found.curve.speed[top] < found.speed[right]
+    for left_error, right_error in ((0.1, 0.2), (0.2, 0.1), (np.nan, 0.1), (0.1, np.nan), (np.inf, 0.1)):
+        error = np.full(found.speed.shape, 0.3)
+        error[right - 1], error[right] = left_error, right_error
+        counted = error_at(replace(found, error_estimate=error), top)
+        wanted = np.nan if np.isnan(left_error + right_error) else max(left_error, right_error)
+        assert counted == wanted or (np.isnan(counted) and np.isnan(wanted))
 
 
 def test_resonances_that_are_not_asked_for_are_named() -> None:
