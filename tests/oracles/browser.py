@@ -7,6 +7,7 @@ import json
 import os
 import select
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -40,6 +41,7 @@ for place, end in zip((3, 4), ends):
     os.dup2(end, place)
 os.execv(sys.argv[3], sys.argv[3:])
 """
+ROOT = Path(__file__).parents[2]
 PATIENCE = 60.0  # seconds for one answer
 PAPER = {"A4": (210.0 / 25.4, 297.0 / 25.4), "Letter": (8.5, 11.0)}  # inches
 
@@ -47,6 +49,31 @@ PAPER = {"A4": (210.0 / 25.4, 297.0 / 25.4), "Letter": (8.5, 11.0)}  # inches
 def found() -> str | None:
     """Path of a Chromium, None without one."""
     return next((path for name in NAMES if (path := shutil.which(name))), None)
+
+
+@contextmanager
+def serving(*arguments: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
+    """Address of the page that a command of leblanc serves in a process of its own, gone at the end."""
+    code = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from leblanc.cli import main; sys.exit(main())"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # A shell that starts the tests in the background has Ctrl-C ignored, which would be passed on.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    try:
+        assert process.stdout is not None
+        ready, _, _ = select.select([process.stdout], [], [], PATIENCE)
+        assert ready, "the page does not come up"
+        said = process.stdout.readline()
+        assert said.startswith("Open http://"), process.communicate(timeout=PATIENCE)
+        yield said.split()[1], process
+    finally:
+        if process.poll() is None:
+            process.kill()
+        process.communicate()
 
 
 @dataclass

@@ -8,10 +8,8 @@ from __future__ import annotations
 import json
 import os
 import random
-import select
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -26,7 +24,7 @@ import pytest
 import leblanc as lb
 from leblanc import cli
 from leblanc.cli import main
-from tests.oracles.browser import Browser, browser, found
+from tests.oracles.browser import Browser, browser, found, serving
 
 ROOT = Path(cli.__file__).parents[2]
 SCENE = ROOT / "examples" / "washing_machine.toml"
@@ -136,30 +134,14 @@ class App:
 @contextmanager
 def served(scene: Path = SCENE, port: int = 0) -> Iterator[tuple[str, subprocess.Popen[str]]]:
     """Address of the page of a process of its own; at the end that has said nothing on stderr."""
-    code = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from leblanc.cli import main; sys.exit(main())"
-    process = subprocess.Popen(
-        [sys.executable, "-c", code, "app", str(scene), "--port", str(port)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
-    try:
-        assert process.stdout is not None
-        ready, _, _ = select.select([process.stdout], [], [], PATIENCE)
-        assert ready, "the page does not come up"
-        said = process.stdout.readline()
-        assert said.startswith("Open http://127.0.0.1:"), process.communicate(timeout=PATIENCE)
-        yield said.split()[1], process
+    with serving("app", str(scene), "--port", str(port)) as (address, process):
+        assert address.startswith("http://127.0.0.1:")
+        yield address, process
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
             _, told = process.communicate(timeout=PATIENCE)
             assert process.returncode == 130, told
             assert told.splitlines() == ["leblanc: interrupted"]
-    finally:
-        if process.poll() is None:
-            process.kill()
-        process.communicate()
 
 
 @pytest.fixture(scope="module")

@@ -7,14 +7,11 @@ from __future__ import annotations
 
 import base64
 import io
-import os
-import select
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
@@ -27,40 +24,15 @@ from leblanc import cli
 from leblanc.cli import main
 from leblanc.view.picture import prepare_off_screen
 from meshes.errors import InputError
-from tests.oracles.browser import Browser
+from tests.oracles.browser import Browser, serving
 
 ROOT = Path(cli.__file__).parents[2]
 RUNUP = str(ROOT / "examples" / "runup.toml")
+VIEW = ("view", RUNUP, "--browser", "--port", "0", "--speed", "90 rad/s")
 PATIENCE = 60.0  # seconds until something must have happened
 
 pytest.importorskip("trame")
 pytest.importorskip("trame_vtk")
-
-
-@contextmanager
-def served(*options: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
-    """Address of the page of a process of its own, which is gone at the end."""
-    code = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from leblanc.cli import main; sys.exit(main())"
-    process = subprocess.Popen(
-        [sys.executable, "-c", code, "view", RUNUP, "--browser", "--port", "0", *options],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=dict(os.environ),
-        # A shell that starts the tests in the background has Ctrl-C ignored, which would be passed on.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
-    try:
-        assert process.stdout is not None
-        ready, _, _ = select.select([process.stdout], [], [], PATIENCE)
-        assert ready, "the page does not come up"
-        said = process.stdout.readline()
-        assert said.startswith("Open http://"), process.communicate(timeout=PATIENCE)
-        yield said.split()[1], process
-    finally:
-        if process.poll() is None:
-            process.kill()
-        process.communicate()
 
 
 Page = Callable[[], tuple[str, subprocess.Popen[str]]]
@@ -78,7 +50,11 @@ def page() -> Iterator[Page]:
 
         def served_by() -> tuple[str, subprocess.Popen[str]]:
             if not up or up[-1][1].poll() is not None:
-                up.append(stack.enter_context(served("--speed", "90 rad/s")))
+                up.append(
+                    stack.enter_context(
+                        serving("view", RUNUP, "--browser", "--port", "0", "--speed", "90 rad/s")
+                    )
+                )
             return up[-1]
 
         yield served_by
